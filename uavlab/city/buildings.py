@@ -1,0 +1,175 @@
+"""Buildings as unions of convex pieces.
+
+A convex piece is the hull of its corners: a box, a prism, a tower with a pointed roof, a frustum. Whether a point
+lies inside is one matrix product, its faces are what a scene draws, and anything that is not convex (an L, a
+courtyard) is a union of pieces. Footprints of any shape are cut into triangles.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+from scipy.spatial import ConvexHull, QhullError
+
+FACE_TOLERANCE = 1e-9
+"""How far outside a face [m] a point still counts as inside: rounding, not thickness."""
+
+
+@dataclass(frozen=True, eq=False)
+class Building:
+    """A solid: the union of convex pieces.
+
+    Attributes
+    ----------
+    pieces : tuple of (M, 3) arrays
+        Corners of each convex piece [m]; at least four, not all in one plane.
+    name : str
+        What messages and legends call it.
+    color : str
+        Any matplotlib colour.
+
+    Raises
+    ------
+    ValueError
+        If there is no piece, a corner is not finite, or a piece has no volume.
+    """
+
+    pieces: tuple[np.ndarray, ...]
+    name: str = "building"
+    color: str = "lightsteelblue"
+
+    def __post_init__(self) -> None:
+        pieces = tuple(np.asarray(piece, dtype=float) for piece in self.pieces)
+        if not pieces:
+            raise ValueError(f"pieces of {self.name!r} is empty: give at least one array of corners")
+        for piece in pieces:
+            if piece.ndim != 2 or piece.shape[1] != 3:
+                raise ValueError(f"pieces of {self.name!r} must have shape (M, 3), got {piece.shape}")
+            if not np.isfinite(piece).all():
+                raise ValueError(f"pieces of {self.name!r} have a corner that is NaN or infinite")
+        object.__setattr__(self, "pieces", pieces)
+        self.hulls  # noqa: B018  a piece without volume is refused now, not when it is drawn
+
+    @classmethod
+    def hull(cls, corners: npt.ArrayLike, *, name: str = "building", color: str = "lightsteelblue") -> "Building":
+        """The convex hull of corners (M, 3) [m]: a frustum, a spire, any convex body, on the ground or above it."""
+        return cls((np.asarray(corners, dtype=float),), name, color)
+
+    @classmethod
+    def roofed(
+        cls,
+        footprint: npt.ArrayLike,
+        eaves: float,
+        ridge: npt.ArrayLike,
+        *,
+        bottom: float = 0.0,
+        name: str = "building",
+        color: str = "lightsteelblue",
+    ) -> "Building":
+        """Walls over a convex footprint (M, 2) from `bottom` to `eaves` [m], and a roof up to the ridge points (R, 3).
+
+        One ridge point makes a spire, two a gable or hip roof, a smaller polygon a frustum.
+        """
+        outline = np.asarray(footprint, dtype=float)
+        walls = [np.column_stack([outline, np.full(len(outline), z)]) for z in (bottom, eaves)]
+        return cls.hull(np.vstack([*walls, np.atleast_2d(np.asarray(ridge, dtype=float))]), name=name, color=color)
+
+    @classmethod
+    def prism(
+        cls,
+        footprint: npt.ArrayLike,
+        top: float,
+        *,
+        bottom: float = 0.0,
+        holes: Sequence[npt.ArrayLike] = (),
+        name: str = "building",
+        color: str = "lightsteelblue",
+    ) -> "Building":
+        """A footprint of any shape, with or without courtyards, between two heights.
+
+        Parameters
+        ----------
+        footprint : array (M, 2)
+            Outline [m], either way round, closed or not.
+        top, bottom : float
+            Heights of roof and floor [m]; a floor above 0 makes a floating building.
+        holes : sequence of (H, 2) arrays
+            Courtyards [m].
+
+        Raises
+        ------
+        ValueError
+            If the outline crosses itself or has fewer than three corners, or `top` is not above `bottom`.
+        """
+        if not top > bottom:
+            raise ValueError(f"top of {name!r} must be above its bottom ({bottom:g} m), got {top:g} m")
+        polygon = footprint_polygon(footprint, holes, name)
+        return cls(tuple(extrude(part, bottom, top) for part in convex_parts(polygon)), name, color)
+
+    @cached_property
+    def hulls(self) -> tuple[ConvexHull, ...]:
+        """The convex hull of each piece."""
+        try:
+            return tuple(ConvexHull(piece) for piece in self.pieces)
+        except (QhullError, ValueError):
+            raise ValueError(
+                f"pieces of {self.name!r} must each span a volume: at least four corners, not all in one plane"
+            ) from None
+
+    @cached_property
+    def bounds(self) -> np.ndarray:
+        """Lowest and highest corner of the bounding box, (2, 3) [m]."""
+        corners = np.vstack(self.pieces)
+        return np.array([corners.min(axis=0), corners.max(axis=0)])
+
+    def contains(self, points: npt.ArrayLike) -> np.ndarray:
+        """Whether each of the points (..., 3) [m] lies inside or on the surface, (...) bool."""
+        points = np.asarray(points, dtype=float)
+        inside = np.zeros(points.shape[:-1], dtype=bool)
+        for hull in self.hulls:
+            normals, offsets = hull.equations[:, :3], hull.equations[:, 3]
+            inside |= (points @ normals.T + offsets <= FACE_TOLERANCE).all(axis=-1)
+        return inside
+
+    def triangles(self) -> np.ndarray:
+        """Surface triangles of all pieces, (T, 3 corners, 3) [m], seen counter-clockwise from outside."""
+        surfaces = []
+        for hull in self.hulls:
+            corners = hull.points[hull.simplices]
+            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            inward = np.einsum("ij,ij->i", normals, hull.equations[:, :3]) < 0
+            corners[inward] = corners[inward][:, ::-1]
+            surfaces.append(corners)
+        return np.concatenate(surfaces)
+
+
+def footprint_polygon(outline: npt.ArrayLike, holes: Sequence[npt.ArrayLike], name: str) -> shapely.Polygon:
+    """A checked polygon; `ValueError` says where an outline crosses itself."""
+    outline = np.asarray(outline, dtype=float)
+    if outline.ndim != 2 or outline.shape[1] < 2 or len(np.unique(outline[:, :2], axis=0)) < 3:
+        raise ValueError(f"footprint of {name!r} needs at least three different corners (x, y)")
+    if not np.isfinite(outline).all():
+        raise ValueError(f"footprint of {name!r} has a corner that is NaN or infinite")
+    polygon = shapely.Polygon(outline[:, :2], [np.asarray(hole, dtype=float)[:, :2] for hole in holes])
+    if not polygon.is_valid:
+        raise ValueError(
+            f"footprint of {name!r} is not a simple polygon: {shapely.is_valid_reason(polygon)}; "
+            "repair the outline so that it doesn't cross or touch itself"
+        )
+    return polygon
+
+
+def convex_parts(polygon: shapely.Polygon) -> list[np.ndarray]:
+    """The polygon itself if it is convex, else triangles that cover it; each as corners (M, 2)."""
+    if not polygon.interiors and np.isclose(polygon.area, polygon.convex_hull.area, rtol=1e-9, atol=0):
+        return [shapely.get_coordinates(polygon)[:-1]]
+    triangles = shapely.constrained_delaunay_triangles(polygon).geoms
+    return [shapely.get_coordinates(triangle)[:3] for triangle in triangles if triangle.area > 1e-6 * polygon.area]
+
+
+def extrude(outline: np.ndarray, bottom: float, top: float) -> np.ndarray:
+    """Corners (2M, 3) of the prism over a convex outline (M, 2)."""
+    return np.vstack([np.column_stack([outline, np.full(len(outline), z)]) for z in (bottom, top)])

@@ -1,0 +1,234 @@
+"""The city as planners see it: a box of voxels, free or occupied, and the distance to the nearest wall.
+
+A voxel (i, j, k) covers `origin + cell·[i, i+1)` on each axis, its centre is the node that planners visit. A voxel is
+occupied when its centre lies in a building. Outside of the box nothing may fly; the border itself is no obstacle,
+so clearance is measured to buildings alone, neither to the border nor to the ground.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab.city.buildings import Building
+from uavlab.city.voxels import squared_clearance, voxels_on_segment
+
+MOST_VOXELS = 500_000_000
+"""More than this is refused: half a gigabyte for the occupancy alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class City:
+    """An occupancy grid and the buildings that it came from.
+
+    Attributes
+    ----------
+    occupied : (nx, ny, nz) bool array
+        True where the centre of the voxel lies in a building.
+    cell : float
+        Edge of a voxel [m], above 0.
+    origin : (3,) float array
+        Lowest corner of the map [m].
+    buildings : tuple of Building
+        For drawing and for messages; may be empty, as after `read_voxels`.
+    name : str
+    reference : (longitude, latitude) or None
+        Where on Earth x = y = 0 lies [degrees], when a reader knows.
+
+    Raises
+    ------
+    ValueError
+        If `occupied` is not a three-dimensional array with voxels in it, or `cell` is not above 0.
+    """
+
+    occupied: np.ndarray
+    cell: float = 1.0
+    origin: npt.ArrayLike = (0.0, 0.0, 0.0)
+    buildings: tuple[Building, ...] = ()
+    name: str = "city"
+    reference: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        occupied = np.ascontiguousarray(self.occupied, dtype=bool)
+        if occupied.ndim != 3 or occupied.size == 0:
+            raise ValueError(f"occupied must be a (nx, ny, nz) array with at least one voxel, got shape {occupied.shape}")
+        origin = np.asarray(self.origin, dtype=float)
+        if origin.shape != (3,) or not np.isfinite(origin).all():
+            raise ValueError(f"origin must be three finite numbers (x, y, z) in metres, got {self.origin!r}")
+        object.__setattr__(self, "occupied", occupied)
+        object.__setattr__(self, "origin", origin)
+        object.__setattr__(self, "cell", checked_cell(self.cell))
+        object.__setattr__(self, "buildings", tuple(self.buildings))
+
+    @classmethod
+    def from_buildings(
+        cls,
+        buildings: Sequence[Building],
+        *,
+        cell: float = 1.0,
+        origin: npt.ArrayLike | None = None,
+        size: npt.ArrayLike | None = None,
+        margin: float = 20.0,
+        name: str = "city",
+        reference: tuple[float, float] | None = None,
+    ) -> "City":
+        """Rasterise buildings: a voxel is occupied when its centre lies in one.
+
+        Parameters
+        ----------
+        buildings : sequence of Building
+        cell : float
+            Edge of a voxel [m], typically 0.5 to 5.
+        origin, size : (3,) arrays, optional
+            Lowest corner and extent of the map [m]. By default the buildings' bounding box, `margin` wider on each
+            side and above, down to the lowest building's floor.
+        margin : float
+            Free space around the buildings [m] when `size` is not given.
+
+        Raises
+        ------
+        ValueError
+            If there are neither buildings nor a size, `cell` is not above 0, or the map would have over
+            500 million voxels.
+        """
+        cell = checked_cell(cell)
+        if size is None or origin is None:
+            if not buildings:
+                raise ValueError(
+                    "buildings is empty, so the extent of the map is unknown: give origin and size, "
+                    "for example origin=(0, 0, 0), size=(100, 100, 100)"
+                )
+            low = np.min([building.bounds[0] for building in buildings], axis=0)
+            high = np.max([building.bounds[1] for building in buildings], axis=0)
+            around = np.array([margin, margin, 0.0])
+            origin = low - around if origin is None else np.asarray(origin, dtype=float)
+            size = high + np.array([margin, margin, margin]) - origin if size is None else size
+        corner, extent = np.asarray(origin, dtype=float), np.asarray(size, dtype=float)
+        if extent.shape != (3,) or not (extent > 0).all():
+            raise ValueError(f"size must be three positive extents (x, y, z) in metres, got {size!r}")
+        shape = np.ceil(extent / cell - 1e-9)
+        if shape.prod() > MOST_VOXELS:
+            edge = (extent.prod() / MOST_VOXELS) ** (1 / 3)
+            raise ValueError(
+                f"cell={cell:g} m gives {shape[0]:.0f} × {shape[1]:.0f} × {shape[2]:.0f} voxels over "
+                f"{extent[0]:.0f} × {extent[1]:.0f} × {extent[2]:.0f} m, more than {MOST_VOXELS:,}: "
+                f"use a cell of at least {edge:.2g} m or a smaller size"
+            )
+        occupied = np.zeros(shape.astype(int), dtype=bool)
+        for building in buildings:
+            rasterise(building, occupied, cell, corner)
+        return cls(occupied, cell, corner, tuple(buildings), name, reference)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Number of voxels along x, y and z."""
+        return self.occupied.shape  # type: ignore[return-value]
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """Lowest and highest corner of the map, (2, 3) [m]."""
+        return np.array([self.origin, self.origin + self.cell * np.array(self.shape)])
+
+    @cached_property
+    def clearance(self) -> np.ndarray:
+        """Distance from each centre to the nearest obstacle surface, (nx, ny, nz) [m].
+
+        0 in an obstacle, infinite where there is none at all. Exact: the obstacle is the whole voxel, not its centre.
+        """
+        clearance = squared_clearance(self.occupied)
+        np.sqrt(clearance, out=clearance)
+        clearance *= self.cell
+        return clearance
+
+    def cell_of(self, points: npt.ArrayLike) -> np.ndarray:
+        """Indices (..., 3) of the voxels in which points (..., 3) [m] lie; outside of the map they are out of range."""
+        return np.floor((np.asarray(points, dtype=float) - self.origin) / self.cell).astype(np.int64)
+
+    def center_of(self, index: npt.ArrayLike) -> np.ndarray:
+        """Centres (..., 3) [m] of the voxels with indices (..., 3)."""
+        return self.origin + self.cell * (np.asarray(index) + 0.5)
+
+    def code_of(self, index: npt.ArrayLike) -> np.ndarray:
+        """Node codes of voxels (..., 3): k + nz·(j + ny·i), the position in `occupied.ravel()`.
+
+        Raises
+        ------
+        ValueError
+            If an index is outside of the map.
+        """
+        index = np.asarray(index)
+        if ((index < 0) | (index >= self.shape)).any():
+            raise ValueError(f"index lies outside of the map of {self.shape} voxels: {index.tolist()}")
+        return np.ravel_multi_index(tuple(np.moveaxis(index, -1, 0)), self.shape)
+
+    def index_of(self, code: npt.ArrayLike) -> np.ndarray:
+        """Indices (..., 3) of the voxels with these node codes; the inverse of `code_of`.
+
+        Raises
+        ------
+        ValueError
+            If a code is not between 0 and the number of voxels.
+        """
+        code = np.asarray(code)
+        if ((code < 0) | (code >= self.occupied.size)).any():
+            raise ValueError(f"code must be from 0 to {self.occupied.size - 1}, got {code.tolist()}")
+        return np.stack(np.unravel_index(code, self.shape), axis=-1)
+
+    def inside(self, points: npt.ArrayLike) -> np.ndarray:
+        """Whether points (..., 3) [m] lie in the map's box, (...) bool."""
+        index = self.cell_of(points)
+        return ((index >= 0) & (index < self.shape)).all(axis=-1)
+
+    def is_free(self, points: npt.ArrayLike) -> np.ndarray:
+        """Whether points (..., 3) [m] lie in free voxels, (...) bool; outside of the map is not free."""
+        points = np.asarray(points, dtype=float)
+        inside = self.inside(points)
+        index = np.where(inside[..., None], self.cell_of(points), 0)
+        return inside & ~self.occupied[tuple(np.moveaxis(index, -1, 0))]
+
+    def building_at(self, point: npt.ArrayLike) -> str:
+        """Name of the building in whose voxels a point [m] lies; "an obstacle" if the map knows no buildings."""
+        center = self.center_of(self.cell_of(point))
+        return next((f"building {b.name!r}" for b in self.buildings if b.contains(center)), "an obstacle")
+
+    def voxels_along(self, points: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        """The voxels that a polyline passes through, none left out, and its length in each.
+
+        Parameters
+        ----------
+        points : (N, 3) array
+            Waypoints [m].
+
+        Returns
+        -------
+        index : (M, 3) int array
+            Voxels in order; out of range where the polyline leaves the map.
+        length : (M,) array
+            Length within each [m]; sums to the polyline's.
+        """
+        points = np.asarray(points, dtype=float)
+        voxels, lengths = [], []
+        for start, end in zip(points[:-1], points[1:], strict=True):
+            index, leave = voxels_on_segment((start - self.origin) / self.cell, (end - self.origin) / self.cell)
+            voxels.append(index)
+            lengths.append(np.diff(leave, prepend=0.0) * np.linalg.norm(end - start))
+        if not voxels:
+            return self.cell_of(points), np.zeros(len(points))
+        return np.concatenate(voxels), np.concatenate(lengths)
+
+
+def checked_cell(cell: float) -> float:
+    if not (np.isfinite(cell) and cell > 0):
+        raise ValueError(f"cell must be the edge of a voxel in metres, above 0, got {cell!r}")
+    return float(cell)
+
+
+def rasterise(building: Building, occupied: np.ndarray, cell: float, origin: np.ndarray) -> None:
+    """Mark the voxels whose centres lie in the building, in place; what sticks out of the map is cut off."""
+    low = np.clip(np.floor((building.bounds[0] - origin) / cell - 0.5).astype(int), 0, occupied.shape)
+    high = np.clip(np.ceil((building.bounds[1] - origin) / cell + 0.5).astype(int), 0, occupied.shape)
+    axes = [origin[a] + cell * (np.arange(low[a], high[a]) + 0.5) for a in range(3)]
+    centers = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    occupied[tuple(slice(a, b) for a, b in zip(low, high, strict=True))] |= building.contains(centers)

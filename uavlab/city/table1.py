@@ -1,0 +1,49 @@
+"""The city of REPARE Table 1: five buildings of different shapes in 100 × 100 × 100 m."""
+
+from uavlab.city.buildings import Building
+from uavlab.city.model import City
+
+
+def table1_buildings() -> tuple[Building, ...]:
+    """The five buildings of REPARE Table 1, in the paper's order; colours from the Okabe-Ito palette.
+
+    Building 1 is an L with a ridge along both wings. Its two wings are convex: each is the hull of its walls to
+    65 m and of its half of the ridge at 70 m.
+    """
+    wings = (
+        Building.roofed([(60, 15), (70, 15), (70, 45), (60, 45)], 65, [(65, 15, 70), (65, 40, 70)]),
+        Building.roofed([(60, 35), (95, 35), (95, 45), (60, 45)], 65, [(65, 40, 70), (90, 40, 70)]),
+    )
+    return (
+        Building(wings[0].pieces + wings[1].pieces, "1 notch", "#E69F00"),
+        Building.roofed(
+            [(10, 15), (35, 15), (35, 55), (10, 55)], 60, [(22, 25, 65), (22, 45, 65)], name="2 hip roof", color="#56B4E9"
+        ),
+        Building.roofed(
+            [(70, 60), (90, 60), (90, 80), (70, 80)],
+            80,
+            [(75, 65, 90), (85, 65, 90), (85, 75, 90), (75, 75, 90)],
+            name="3 frustum",
+            color="#009E73",
+        ),
+        Building.prism([(15, 65), (10, 75), (50, 95), (55, 85)], 60, bottom=45, name="4 floating", color="#0072B2"),
+        Building.roofed(
+            [(45, 55), (48, 53), (50, 55), (50, 60), (48, 62), (45, 60)], 95, (48, 58, 99), name="5 spire", color="#F0E442"
+        ),
+    )
+
+
+def table1_city(cell: float = 1.0) -> City:
+    """The map of REPARE Table 1.
+
+    Parameters
+    ----------
+    cell : float
+        Edge of a voxel [m]; the paper's is 1, which gives 100³ voxels, 144 858 of them occupied.
+
+    Returns
+    -------
+    City
+        100 × 100 × 100 m with five buildings, one of them floating, one an L-shaped notch.
+    """
+    return City.from_buildings(table1_buildings(), cell=cell, origin=(0, 0, 0), size=(100, 100, 100), name="Table 1")

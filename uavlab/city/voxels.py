@@ -1,0 +1,115 @@
+"""Two exact computations on voxels: how far the nearest surface is, and which voxels a straight line passes.
+
+Coordinates here are in cells: voxel (i, j, k) covers [i, i+1) × [j, j+1) × [k, k+1), its centre is (i+½, j+½, k+½).
+"""
+
+import numpy as np
+
+from uavlab.compiled import compiled
+
+ROUNDING = 1e-12
+"""Shares of a segment that differ by less are the same point."""
+
+
+@compiled
+def squared_clearance(occupied):
+    """Squared distance [cells²] from each centre to the nearest surface of an occupied voxel, (nx, ny, nz).
+
+    0 inside; infinite everywhere when nothing is occupied. One axis after the other, the minimum over all obstacles
+    is a lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012), here on a line of half cells, because
+    the nearest point of a voxel is its centre plane or one of its faces. Distances between centres would be off
+    by half a cell and more.
+    """
+    squared = np.where(occupied, 0.0, np.inf)
+    for i in range(squared.shape[0]):
+        for j in range(squared.shape[1]):
+            lower_envelope(squared[i, j, :])
+        for k in range(squared.shape[2]):
+            lower_envelope(squared[i, :, k])
+    for j in range(squared.shape[1]):
+        for k in range(squared.shape[2]):
+            lower_envelope(squared[:, j, k])
+    return squared
+
+
+@compiled
+def lower_envelope(line):
+    """Replace line[x] by the minimum over q of line[q] + max(|x − q| − ½, 0)², in place."""
+    apex = np.empty(2 * line.size + 1)  # of the parabolas in the envelope, [half cells]
+    height = np.empty(2 * line.size + 1)
+    begin = np.empty(2 * line.size + 1)  # where each becomes the lowest, [half cells]
+    count = 0
+    for face in range(2 * line.size + 1):  # odd: centre plane of a voxel; even: between two of them
+        level = min(line[max(face // 2 - 1 + face % 2, 0)], line[min(face // 2, line.size - 1)])
+        if level == np.inf:
+            continue
+        start = -np.inf
+        while count > 0:
+            last = count - 1
+            gap = 4.0 * (level - height[last]) + face * face - apex[last] * apex[last]
+            start = gap / (2.0 * (face - apex[last]))
+            if start > begin[last]:
+                break
+            count -= 1
+            start = -np.inf
+        apex[count], height[count], begin[count] = face, level, start
+        count += 1
+    if count == 0:
+        return
+    lowest = 0
+    for x in range(line.size):
+        while lowest + 1 < count and begin[lowest + 1] <= 2 * x + 1:
+            lowest += 1
+        line[x] = height[lowest] + 0.25 * (2 * x + 1 - apex[lowest]) ** 2
+
+
+@compiled
+def voxels_on_segment(start, end):
+    """Voxels in which a segment has length, in order, and the share of the segment at which each is left.
+
+    Amanatides and Woo 1987. Where the segment crosses an edge or a corner (to rounding), it goes straight to the
+    voxel opposite.
+
+    Parameters
+    ----------
+    start, end : (3,) float arrays [cells]
+
+    Returns
+    -------
+    voxels : (M, 3) int array
+    leave : (M,) float array, increasing to 1; a point gives its one voxel.
+    """
+    voxel = np.floor(start).astype(np.int64)
+    capacity = 4 + int(np.abs(np.floor(end) - voxel).sum())
+    voxels = np.empty((capacity, 3), np.int64)
+    leave = np.empty(capacity)
+    step = np.zeros(3, np.int64)
+    crossing = np.full(3, np.inf)  # share of the segment at the next face of each axis
+    between = np.full(3, np.inf)  # share of the segment from face to face
+    for axis in range(3):
+        extent = end[axis] - start[axis]
+        if extent > 0:
+            step[axis] = 1
+            between[axis] = 1.0 / extent
+            crossing[axis] = (voxel[axis] + 1 - start[axis]) / extent
+        elif extent < 0:
+            step[axis] = -1
+            between[axis] = -1.0 / extent
+            crossing[axis] = (voxel[axis] - start[axis]) / extent
+    count = 0
+    reached = 0.0
+    while True:
+        face = min(1.0, crossing[0], crossing[1], crossing[2])
+        if face > 1.0 - ROUNDING:
+            face = 1.0
+        if face > reached or count == 0 and face == 1.0:
+            voxels[count] = voxel
+            leave[count] = face
+            count += 1
+        if face == 1.0:
+            return voxels[:count], leave[:count]
+        reached = face
+        for axis in range(3):
+            if crossing[axis] <= face + ROUNDING:
+                voxel[axis] += step[axis]
+                crossing[axis] += between[axis]

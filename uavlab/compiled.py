@@ -1,0 +1,49 @@
+"""The one wrapper around numba: hot loops stay plain Python and run at the speed of C.
+
+`@compiled` translates a function at its first call and keeps the result on disk, so that only the first run on a
+machine waits for it. Where no cache folder can be written, the function is translated again in each process, after
+one warning.
+"""
+
+import warnings
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import TypeVar
+
+import numba
+
+F = TypeVar("F", bound=Callable)
+
+
+def compiled(function: F) -> F:
+    """Compile a function of numbers, arrays and named tuples with numba, cached on disk where that is possible."""
+    try:
+        dispatcher = numba.njit(cache=True)(function)
+    except RuntimeError:  # numba found no folder that it may write
+        warn_once()
+        return numba.njit(function)
+    discard_stale(Path(dispatcher.stats.cache_path))
+    return dispatcher
+
+
+@cache
+def warn_once() -> None:
+    warnings.warn(
+        "numba's cache folder can't be written, so the planners are compiled anew in each run (about ten seconds); "
+        "set NUMBA_CACHE_DIR to a folder you may write",
+        RuntimeWarning,
+        stacklevel=3,
+    )
+
+
+@cache
+def discard_stale(folder: Path) -> None:
+    """Drop cached code older than the newest source of the package.
+
+    numba looks only at the file of the function itself; an edit in another file that it calls would go unnoticed.
+    """
+    newest = max(source.stat().st_mtime for source in Path(__file__).parent.rglob("*.py"))
+    for index in folder.glob("*.nbi"):
+        if index.stat().st_mtime < newest:
+            index.unlink(missing_ok=True)

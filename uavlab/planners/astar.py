@@ -1,0 +1,210 @@
+"""A* on the voxels of a city, with a price per metre, and REPARE's penalty zone around buildings.
+
+A* expands nodes in the order of g + h: the cost so far plus an estimate of the rest. With an estimate that is never too
+high the first route found is a cheapest one. REPARE (Eqs 11-13) adds a penalty near obstacles; here it is a price per
+metre on the edges, which keeps A* exact and the cost of a route the same in both directions.
+"""
+
+import time
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab.city import City
+from uavlab.compiled import compiled
+from uavlab.planners.grid import (
+    BOXES,
+    HEURISTICS,
+    LENGTHS,
+    MOVES,
+    blocked_around,
+    blocked_voxels,
+    checked_price,
+    distance_left,
+    endpoints,
+    show,
+)
+from uavlab.planners.heap import open_list, pop, push
+from uavlab.route import Route
+
+TIE_BREAK = 1 + 1e-9
+"""Among routes that seem equally short, try the one with less way left: the estimate counts a billionth more."""
+
+ROUNDING = 1 - 1e-12
+"""A cost counts as lower only if it is so by more than the rounding of a sum."""
+
+
+def astar(
+    city: City,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    *,
+    price: npt.ArrayLike | None = None,
+    heuristic: str = "octile",
+    min_clearance: float = 0.0,
+    as_printed: bool = False,
+    record: bool = False,
+) -> Route:
+    """Cheapest route over 26 neighbours, A* (REPARE 2.3.1, Eqs 8-13).
+
+    cost = Σ d·(price at both ends)/2 over the moves, d their lengths; without a price, the length.
+
+    Parameters
+    ----------
+    city : City
+    start, goal : (3,) arrays
+        Positions [m]. The route goes from the centre of the start's voxel to the centre of the goal's.
+    price : (nx, ny, nz) array, optional
+        Cost of a metre in each voxel, at least 0; `penalty_zone` gives REPARE's 1 + ω·O_risk.
+    heuristic : {"octile", "euclidean", "zero"}
+        Estimate of the remaining way: by 26 moves on an empty map; straight (Eq. 9); none (Dijkstra).
+    min_clearance : float
+        Distance to obstacle surfaces that no node of the route may fall below [m], for example D_min (Eq. 7).
+    as_printed : bool
+        Order the open list by Eq. 13: T = g·price + h. The factor multiplies the whole way so far and no
+        successor inherits it, so it is no cost of a route: the result depends on the direction of travel.
+    record : bool
+        Keep the order of expansion in `info["order"]`.
+
+    Returns
+    -------
+    Route
+        `cost`; `info["expanded"]`, the number of expansions, `info["elapsed"]` [s] and, with `record`,
+        `info["order"]`, the node codes as they were expanded. `reached` is False where no way exists.
+
+    Raises
+    ------
+    ValueError
+        If start or goal can't be flown from or to, both lie in one voxel, or an argument is out of its range.
+    """
+    if heuristic not in HEURISTICS:
+        raise ValueError(f"heuristic must be one of {', '.join(map(repr, HEURISTICS))}, got {heuristic!r}")
+    if as_printed and price is None:
+        raise ValueError("as_printed needs a price: without a penalty zone Eq. 13 is plain A*")
+    source, target = endpoints(city, start, goal, min_clearance)
+    prices = None if price is None else checked_price(city, price)
+    began = time.perf_counter()
+    blocked = blocked_voxels(city, min_clearance)
+    cheapest = 1.0 if prices is None or as_printed else float(prices.min())
+    g, parent = np.empty(city.occupied.size), np.zeros(city.occupied.size, np.uint8)
+    order = np.empty(city.occupied.size if record else 0, np.int32)
+    expanded = search(
+        blocked,
+        prices,
+        as_printed,
+        HEURISTICS[heuristic],
+        cheapest * TIE_BREAK,
+        source,
+        target,
+        g,
+        parent,
+        open_list(city.occupied.size),
+        order,
+    )
+    info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
+    if record:
+        info["order"] = order[:expanded].copy()
+    if parent[target] == UNSEEN:
+        reason = f"no free way from {show(start)} to {show(goal)}: all {expanded} voxels within reach were searched"
+        return Route(np.empty((0, 3)), "A*", reached=False, reason=reason, cost=np.inf, info=info)
+    nodes = trace(parent, source, target, city.shape)
+    cost = float(g[target]) * city.cell
+    return Route(city.center_of(city.index_of(nodes)), "A*", cost=cost, info=info)
+
+
+def penalty_zone(
+    city: City, safe_distance: float, *, penalty: float, shape: str = "ball"
+) -> np.ndarray:
+    """Price per metre 1 + ω·O_risk: 1 in the open, more near obstacles (REPARE Eq. 12).
+
+    Parameters
+    ----------
+    city : City
+    safe_distance : float
+        D_min [m] (Eq. 7), typically 3.5 to 5.5: O_risk = 1 where an obstacle is nearer.
+    penalty : float
+        ω, at least 0; typically 0.1 to 2.
+    shape : {"ball", "ring"}
+        "ball" measures the distance to the nearest surface. "ring" looks, as the paper does, only at the 26 points
+        of the outer ring, r = D_min − half a cell away along each axis; for r ≥ 5 cells it can miss an obstacle.
+
+    Returns
+    -------
+    (nx, ny, nz) float array
+        For `astar(..., price=...)` and `shortcut(..., price=...)`.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    if not (np.isfinite(safe_distance) and safe_distance > 0):
+        raise ValueError(f"safe_distance must be a distance in metres, above 0, got {safe_distance!r}")
+    if not (np.isfinite(penalty) and penalty >= 0):
+        raise ValueError(f"penalty must be finite and at least 0, got {penalty!r}")
+    if shape == "ball":
+        near = city.clearance < safe_distance - 1e-9 * city.cell
+    elif shape == "ring":
+        near = ring_meets_obstacle(city.occupied, max(1, round(safe_distance / city.cell - 0.5)))
+    else:
+        raise ValueError(f"shape must be 'ball' or 'ring', got {shape!r}")
+    return 1.0 + penalty * near
+
+
+def ring_meets_obstacle(occupied: np.ndarray, radius: int) -> np.ndarray:
+    """Whether one of the 26 outer ring nodes, `radius` cells away, is occupied (REPARE Fig. 5), (nx, ny, nz) bool."""
+    near = occupied.copy()
+    inner = tuple(slice(radius, radius + n) for n in occupied.shape)
+    padded = np.pad(occupied, radius)
+    for move in MOVES:
+        near |= padded[tuple(slice(s.start + radius * m, s.stop + radius * m) for s, m in zip(inner, move, strict=True))]
+    return near
+
+
+UNSEEN, START = 0, 27  # values of `parent`; 1 to 26: the move that led to the node
+
+
+@compiled
+def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent, waiting, order):
+    """Expand nodes in order of g + h until the goal is the first; `parent` then holds the tree. Count expansions."""
+    ny, nz = blocked.shape[1], blocked.shape[2]
+    goal_i, goal_j, goal_k = goal // (ny * nz), goal // nz % ny, goal % nz
+    prices = price.ravel() if price is not None else None
+    expanded = 0
+    g[start] = 0.0
+    parent[start] = START
+    push(waiting, start, 0.0)
+    while waiting.size[0] > 0:
+        node = pop(waiting)
+        if node == goal:
+            break
+        if expanded < order.size:
+            order[expanded] = node
+        expanded += 1
+        i, j, k = node // (ny * nz), node // nz % ny, node % nz
+        around = blocked_around(blocked, i, j, k)
+        for move in range(26):
+            if around & BOXES[move]:
+                continue
+            di, dj, dk = MOVES[move]
+            neighbour = node + (di * ny + dj) * nz + dk
+            cost = LENGTHS[move]
+            if prices is not None and not as_printed:
+                cost *= 0.5 * (prices[node] + prices[neighbour])
+            cost += g[node]
+            if parent[neighbour] == UNSEEN or cost < g[neighbour] * ROUNDING:
+                g[neighbour] = cost
+                parent[neighbour] = move + 1
+                left = weight * distance_left(heuristic, goal_i - i - di, goal_j - j - dj, goal_k - k - dk)
+                factor = prices[neighbour] if prices is not None and as_printed else 1.0
+                push(waiting, neighbour, cost * factor + left)
+    return expanded
+
+
+def trace(parent: np.ndarray, source: int, target: int, shape: tuple[int, int, int]) -> np.ndarray:
+    """Node codes from source to target, back along the moves that led there."""
+    steps = MOVES @ np.array([shape[1] * shape[2], shape[2], 1])
+    nodes = [target]
+    while nodes[-1] != source:
+        nodes.append(nodes[-1] - int(steps[parent[nodes[-1]] - 1]))
+    return np.array(nodes[::-1])

@@ -1,0 +1,146 @@
+"""What the graph planners share: 26 neighbours, which moves are legal, heuristics, and questions asked well.
+
+A node is a voxel, named by its code (`City.code_of`). From it there are 26 moves, to all voxels around it. A move is
+legal when every voxel of its bounding box is free: 1 for a straight move, 3 more for a diagonal one, 7 for
+one through a corner; so nothing is cut. The voxels around a node fit into one word of 27 bits, and a move is legal
+when the word has no bit in common with the bounding box of the move.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab.city import City
+from uavlab.compiled import compiled
+
+MOVES = np.array([(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) != (0, 0, 0)])
+"""The 26 moves (26, 3) [cells], in the order in which they are tried."""
+
+LENGTHS = np.sqrt((MOVES**2).sum(axis=1))
+"""Their lengths [cells]: 1, √2 or √3."""
+
+
+def bit_of(i: int, j: int, k: int) -> int:
+    """The bit of the word of 27 that stands for the voxel at offset (i, j, k), each −1, 0 or 1."""
+    return 1 << (9 * (i + 1) + 3 * (j + 1) + (k + 1))
+
+
+def bounding_box(move: np.ndarray) -> int:
+    """The word of 27 bits with those set that the move's bounding box covers, but for the node itself."""
+    covered = [sorted({0, int(offset)}) for offset in move]
+    word = sum(bit_of(i, j, k) for i in covered[0] for j in covered[1] for k in covered[2])
+    return word & ~bit_of(0, 0, 0)
+
+
+BOXES = np.array([bounding_box(move) for move in MOVES])
+"""Voxels that must be free for each move (26,), as words of 27 bits."""
+
+EUCLIDEAN, OCTILE, ZERO = 0, 1, 2
+HEURISTICS = {"octile": OCTILE, "euclidean": EUCLIDEAN, "zero": ZERO}
+"""Estimates of the way that remains. None is above the true cost, so A* stays exact."""
+
+
+@compiled
+def blocked_around(blocked, i, j, k):
+    """The word of 27 bits with those set whose voxels around (i, j, k) are blocked or outside of the map."""
+    nx, ny, nz = blocked.shape
+    word = 0
+    bit = 1
+    for a in range(i - 1, i + 2):
+        for b in range(j - 1, j + 2):
+            for c in range(k - 1, k + 2):
+                if a < 0 or b < 0 or c < 0 or a >= nx or b >= ny or c >= nz or blocked[a, b, c]:
+                    word |= bit
+                bit <<= 1
+    return word
+
+
+@compiled
+def distance_left(heuristic, di, dj, dk):
+    """Estimate of the way [cells] over (di, dj, dk): straight (Eq. 9), by 26 moves (octile), or nothing."""
+    di, dj, dk = abs(di), abs(dj), abs(dk)
+    if heuristic == EUCLIDEAN:
+        return np.sqrt(di * di + dj * dj + dk * dk)
+    if heuristic == OCTILE:  # as many corner moves as the shortest side, then diagonals, then straight ones
+        least = min(di, dj, dk)
+        most = max(di, dj, dk)
+        middle = di + dj + dk - least - most
+        return (np.sqrt(3.0) - np.sqrt(2.0)) * least + (np.sqrt(2.0) - 1.0) * middle + most
+    return 0.0
+
+
+def blocked_voxels(city: City, min_clearance: float) -> np.ndarray:
+    """Where the UAV may not be: obstacles, and what is nearer to them than `min_clearance` [m]; (nx, ny, nz) bool."""
+    if not (np.isfinite(min_clearance) and min_clearance >= 0):
+        raise ValueError(f"min_clearance must be a distance in metres, at least 0, got {min_clearance!r}")
+    if min_clearance == 0:
+        return city.occupied
+    return city.clearance < min_clearance - 1e-9 * city.cell
+
+
+def node_at(city: City, point: npt.ArrayLike, argument: str, min_clearance: float = 0.0) -> int:
+    """The code of the voxel in which a start or a goal lies.
+
+    Raises
+    ------
+    ValueError
+        If it isn't three finite numbers, lies outside of the map, in an obstacle, or nearer to one than
+        `min_clearance`; the message names the argument, what is in the way, and the nearest point that would do.
+    """
+    position = np.asarray(point, dtype=float)
+    if position.shape != (3,):
+        raise ValueError(f"{argument} must be three numbers (x, y, z) in metres, got shape {position.shape}")
+    if not np.isfinite(position).all():
+        raise ValueError(f"{argument} must be finite, got {show(position)}")
+    if not city.inside(position):
+        low, high = city.bounds
+        ranges = ", ".join(f"{a} {lo:g} to {hi:g}" for a, lo, hi in zip("xyz", low, high, strict=True))
+        raise ValueError(f"{argument} {show(position)} lies outside of the map: {ranges} m")
+    index = tuple(city.cell_of(position))
+    if city.occupied[index]:
+        raise ValueError(
+            f"{argument} {show(position)} lies in {city.building_at(position)}; "
+            f"{nearest_allowed(city, position, min_clearance)}"
+        )
+    if blocked_voxels(city, min_clearance)[index]:
+        raise ValueError(
+            f"{argument} {show(position)} is {city.clearance[index]:.2f} m from the nearest obstacle, "
+            f"min_clearance asks for {min_clearance:g} m; {nearest_allowed(city, position, min_clearance)}"
+        )
+    return int(city.code_of(index))
+
+
+def nearest_allowed(city: City, position: np.ndarray, min_clearance: float) -> str:
+    """Words for the centre nearest to a position where the UAV may be."""
+    free = np.argwhere(~blocked_voxels(city, min_clearance))
+    if len(free) == 0:
+        return "no voxel of the map is free"
+    centers = city.center_of(free)
+    return f"the nearest free point is {show(centers[np.argmin(((centers - position) ** 2).sum(axis=1))])}"
+
+
+def endpoints(
+    city: City, start: npt.ArrayLike, goal: npt.ArrayLike, min_clearance: float = 0.0
+) -> tuple[int, int]:
+    """Codes of the start's and the goal's voxel; `ValueError` if one can't be flown from or to, or both are one."""
+    codes = node_at(city, start, "start", min_clearance), node_at(city, goal, "goal", min_clearance)
+    if codes[0] == codes[1]:
+        raise ValueError(
+            f"start {show(start)} and goal {show(goal)} lie in the same voxel: "
+            f"there is no route to plan; choose a goal at least one cell ({city.cell:g} m) away"
+        )
+    return codes
+
+
+def checked_price(city: City, price: npt.ArrayLike) -> np.ndarray:
+    """A price per metre as a float array of the city's shape."""
+    checked = np.ascontiguousarray(price, dtype=float)
+    if checked.shape != city.shape:
+        raise ValueError(f"price must have the city's shape {city.shape}, got {checked.shape}")
+    if not (np.isfinite(checked).all() and (checked >= 0).all()):
+        raise ValueError("price must be finite and at least 0 everywhere; use min_clearance to forbid voxels")
+    return checked
+
+
+def show(point: npt.ArrayLike) -> str:
+    """A point for a message: (90.0, 18.0, 30.0)."""
+    return "(" + ", ".join(f"{coordinate:.1f}" for coordinate in np.asarray(point, dtype=float)) + ")"

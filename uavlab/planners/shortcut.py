@@ -1,0 +1,114 @@
+"""Any-angle shortcuts: leave out the waypoints that a straight line makes needless.
+
+A route over 26 neighbours zigzags. Among all ways to skip waypoints, dynamic programming finds the cheapest: best[j] is
+the least over i < j of best[i] plus the straight line from i to j, if nothing is in between. A line that touches
+the edge or the corner of an obstacle is blocked, the same rule as for the moves on the grid.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab.city import City
+from uavlab.city.voxels import voxels_on_segment
+from uavlab.compiled import compiled
+from uavlab.planners.grid import blocked_voxels, checked_price, show
+from uavlab.route import Route
+
+
+def shortcut(
+    route: Route, city: City, *, price: npt.ArrayLike | None = None, min_clearance: float = 0.0
+) -> Route:
+    """The cheapest route over a subset of the waypoints.
+
+    Parameters
+    ----------
+    route : Route
+        With waypoints one or two cells apart the result is best; `route.resample` adds some.
+    city : City
+    price : (nx, ny, nz) array, optional
+        Cost of a metre in each voxel, the one that the route was planned with; a leg costs the integral along it.
+    min_clearance : float
+        Clearance [m] that no voxel touched by the route may fall below.
+
+    Returns
+    -------
+    Route
+        With the same ends; `cost` is its length or, with a price, the integral. A route that didn't arrive comes
+        back as it is.
+
+    Raises
+    ------
+    ValueError
+        If the route itself passes through a blocked voxel; the message says between which waypoints.
+    """
+    if not route.reached or len(route.points) < 2:
+        return route
+    prices = None if price is None else checked_price(city, price)
+    points = (route.points - city.origin) / city.cell
+    blocked = blocked_voxels(city, min_clearance)
+    best, before = cheapest_subset(points, blocked, prices)
+    if not np.isfinite(best).all():
+        leg = int(np.flatnonzero(~np.isfinite(best))[0])
+        raise ValueError(
+            f"route passes through a blocked voxel between waypoints {leg - 1} {show(route.points[leg - 1])} and "
+            f"{leg} {show(route.points[leg])}: shorten only routes that keep min_clearance={min_clearance:g} m themselves"
+        )
+    kept = [len(points) - 1]
+    while kept[-1] != 0:
+        kept.append(int(before[kept[-1]]))
+    return replace(
+        route,
+        points=route.points[kept[::-1]],
+        planner=f"{route.planner} + shortcut",
+        cost=float(best[-1]) * city.cell,
+    )
+
+
+@compiled
+def cheapest_subset(points, blocked, price):
+    """Least cost from the first to each waypoint, and the waypoint before it on the way."""
+    least_price = price.min() if price is not None else 1.0
+    best = np.full(len(points), np.inf)
+    before = np.zeros(len(points), np.int64)
+    best[0] = 0.0
+    for j in range(1, len(points)):
+        for i in range(j):
+            at_least = least_price * np.sqrt(((points[j] - points[i]) ** 2).sum())
+            if best[i] + at_least < best[j] - 1e-9:
+                cost = best[i] + line_cost(blocked, price, points[i], points[j])
+                if cost < best[j] - 1e-9:
+                    best[j] = cost
+                    before[j] = i
+        if best[j] == np.inf:
+            break
+    return best, before
+
+
+@compiled
+def line_cost(blocked, price, start, end):
+    """Integral of the price along a straight line [cells], its length without one; infinite if it is blocked."""
+    voxels, leave = voxels_on_segment(start, end)
+    length = np.sqrt(((end - start) ** 2).sum())
+    cost = 0.0
+    entered = 0.0
+    for m in range(len(voxels)):
+        if box_blocked(blocked, voxels[max(m - 1, 0)], voxels[m]):
+            return np.inf
+        if price is not None:
+            cost += (leave[m] - entered) * length * price[voxels[m, 0], voxels[m, 1], voxels[m, 2]]
+            entered = leave[m]
+    return cost if price is not None else length
+
+
+@compiled
+def box_blocked(blocked, one, other):
+    """Whether a voxel of the bounding box of two voxels is blocked or outside."""
+    for i in range(min(one[0], other[0]), max(one[0], other[0]) + 1):
+        for j in range(min(one[1], other[1]), max(one[1], other[1]) + 1):
+            for k in range(min(one[2], other[2]), max(one[2], other[2]) + 1):
+                inside = 0 <= i < blocked.shape[0] and 0 <= j < blocked.shape[1] and 0 <= k < blocked.shape[2]
+                if not inside or blocked[i, j, k]:
+                    return True
+    return False

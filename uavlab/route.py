@@ -1,0 +1,143 @@
+"""A route and what can be measured on it: length, angles, and how near it comes to the buildings."""
+
+import csv
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uavlab.city import City
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """What a planner returns.
+
+    Attributes
+    ----------
+    points : (N, 3) float array
+        Waypoints [m], joined by straight legs; (0, 3) when there is no route.
+    planner : str
+        Who made it.
+    reached : bool
+        Whether it arrives. Not arriving is an answer, not an error.
+    reason : str
+        Why it doesn't arrive; empty when it does.
+    cost : float
+        What the planner minimised, in the planner's own unit; infinite when it didn't arrive.
+    info : dict
+        What the planner noted: `expanded`, `elapsed` [s], histories when asked for.
+
+    Raises
+    ------
+    ValueError
+        If `points` hasn't shape (N, 3) or is not finite.
+    """
+
+    points: np.ndarray
+    planner: str = "given"
+    reached: bool = True
+    reason: str = ""
+    cost: float = np.nan
+    info: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        points = np.array(self.points, dtype=float)
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise ValueError(f"points must have shape (N, 3), got {points.shape}")
+        if not np.isfinite(points).all():
+            raise ValueError("points must be finite: a waypoint is NaN or infinite")
+        object.__setattr__(self, "points", points)
+
+    def __repr__(self) -> str:
+        if not self.reached:
+            return f"<Route by {self.planner}: not reached, {self.reason}>"
+        return f"<Route by {self.planner}: {self.length:.1f} m, {len(self.points)} waypoints>"
+
+    @cached_property
+    def leg_lengths(self) -> np.ndarray:
+        """Length of each leg, (N − 1,) [m]."""
+        return np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+
+    @property
+    def length(self) -> float:
+        """Length of the whole route [m]."""
+        return float(self.leg_lengths.sum())
+
+    @property
+    def distance(self) -> np.ndarray:
+        """Distance flown at each waypoint, (N,) [m]."""
+        return np.concatenate([[0.0], np.cumsum(self.leg_lengths)])[: len(self.points)]
+
+    @property
+    def pitch(self) -> np.ndarray:
+        """Climb angle of each leg, (N − 1,) [rad]; positive upwards, ±π/2 for a vertical leg."""
+        legs = np.diff(self.points, axis=0)
+        return np.arctan2(legs[:, 2], np.hypot(legs[:, 0], legs[:, 1]))
+
+    @property
+    def turn(self) -> np.ndarray:
+        """Change of heading at each inner waypoint, (N − 2,) [rad], 0 to π.
+
+        A vertical leg has no heading of its own; it keeps the one of the leg before it.
+        """
+        legs = np.diff(self.points, axis=0)
+        heading = np.arctan2(legs[:, 1], legs[:, 0])
+        level = np.flatnonzero(np.hypot(legs[:, 0], legs[:, 1]) > 0)
+        if len(level) == 0:
+            return np.zeros(max(len(self.points) - 2, 0))
+        last_level = np.maximum.accumulate(np.where(np.isin(np.arange(len(legs)), level), np.arange(len(legs)), -1))
+        heading = heading[np.where(last_level < 0, level[0], last_level)]
+        return np.abs((np.diff(heading) + np.pi) % (2 * np.pi) - np.pi)
+
+    def clearance_profile(self, city: City) -> tuple[np.ndarray, np.ndarray]:
+        """Clearance all along the route, by exact voxel traversal.
+
+        Returns
+        -------
+        distance : (M,) array
+            Distance flown at the middle of the stay in each voxel [m].
+        clearance : (M,) array
+            `city.clearance` of each voxel that the route passes through [m]; 0 outside of the map. It is taken at
+            the voxel's centre; off the centre the true distance differs by at most half a voxel's diagonal.
+        """
+        if len(self.points) == 0:
+            return np.empty(0), np.empty(0)
+        index, length = city.voxels_along(self.points)
+        inside = ((index >= 0) & (index < city.shape)).all(axis=1)
+        clearance = np.zeros(len(index))
+        clearance[inside] = city.clearance[tuple(index[inside].T)]
+        return np.cumsum(length) - length / 2, clearance
+
+    def clearance(self, city: City) -> float:
+        """Smallest clearance along the route [m]; NaN for a route without points."""
+        clearance = self.clearance_profile(city)[1]
+        return float(clearance.min()) if len(clearance) else float("nan")
+
+    def resample(self, step: float) -> "Route":
+        """The same way with a waypoint at least every `step` metres; all waypoints stay.
+
+        Raises
+        ------
+        ValueError
+            If `step` is not above 0.
+        """
+        if not (np.isfinite(step) and step > 0):
+            raise ValueError(f"step must be a distance in metres, above 0, got {step!r}")
+        if len(self.points) < 2:
+            return self
+        parts = np.maximum(np.ceil(self.leg_lengths / step - 1e-9).astype(int), 1)
+        legs = [
+            np.linspace(start, end, n, endpoint=False)
+            for start, end, n in zip(self.points[:-1], self.points[1:], parts, strict=True)
+        ]
+        return replace(self, points=np.vstack([*legs, self.points[-1:]]))
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write waypoints and the distance flown to each, in metres: columns x_m, y_m, z_m, distance_m."""
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(["x_m", "y_m", "z_m", "distance_m"])
+            writer.writerows([repr(float(value)) for value in row] for row in np.column_stack([self.points, self.distance]))
