@@ -140,4 +140,6 @@ class Route:
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(["x_m", "y_m", "z_m", "distance_m"])
-            writer.writerows([repr(float(value)) for value in row] for row in np.column_stack([self.points, self.distance]))
+            writer.writerows(
+                [repr(float(value)) for value in row] for row in np.column_stack([self.points, self.distance])
+            )

@@ -2,6 +2,16 @@
 
 from uavlab.city.buildings import Building
 from uavlab.city.model import City
+from uavlab.city.readers import read_city, read_cityjson, read_geojson, read_voxels
 from uavlab.city.table1 import table1_buildings, table1_city
 
-__all__ = ["Building", "City", "table1_buildings", "table1_city"]
+__all__ = [
+    "Building",
+    "City",
+    "read_city",
+    "read_cityjson",
+    "read_geojson",
+    "read_voxels",
+    "table1_buildings",
+    "table1_city",
+]

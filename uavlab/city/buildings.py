@@ -72,10 +72,22 @@ class Building:
         """Walls over a convex footprint (M, 2) from `bottom` to `eaves` [m], and a roof up to the ridge points (R, 3).
 
         One ridge point makes a spire, two a gable or hip roof, a smaller polygon a frustum.
+
+        Raises
+        ------
+        ValueError
+            If the footprint is no simple convex polygon, `eaves` is not above `bottom`, or `ridge` hasn't shape (R, 3).
         """
-        outline = np.asarray(footprint, dtype=float)
-        walls = [np.column_stack([outline, np.full(len(outline), z)]) for z in (bottom, eaves)]
-        return cls.hull(np.vstack([*walls, np.atleast_2d(np.asarray(ridge, dtype=float))]), name=name, color=color)
+        if not eaves > bottom:
+            raise ValueError(f"eaves of {name!r} must be above its bottom ({bottom:g} m), got {eaves:g} m")
+        points = np.atleast_2d(np.asarray(ridge, dtype=float))
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise ValueError(f"ridge of {name!r} must have shape (R, 3), got {np.shape(ridge)}")
+        polygon = footprint_polygon(footprint, (), name)
+        if not is_convex(polygon):
+            raise ValueError(f"footprint of {name!r} must be convex under a roof: join several convex pieces instead")
+        walls = extrude(shapely.get_coordinates(polygon)[:-1], bottom, eaves)
+        return cls.hull(np.vstack([walls, points]), name=name, color=color)
 
     @classmethod
     def prism(
@@ -145,15 +157,28 @@ class Building:
             surfaces.append(corners)
         return np.concatenate(surfaces)
 
+    def edges(self) -> np.ndarray:
+        """Ends (2E, 3) [m] of the edges of all pieces, two rows an edge, for drawing."""
+        return np.concatenate([crease_edges(hull) for hull in self.hulls])
+
+
+def crease_edges(hull: ConvexHull) -> np.ndarray:
+    """Ends (2E, 3) of the edges between faces of a convex hull that don't lie in one plane."""
+    ends = []
+    for face, neighbours in enumerate(hull.neighbors):
+        for corner, neighbour in enumerate(neighbours):  # the neighbour opposite of this corner
+            if face < neighbour and not np.allclose(hull.equations[face], hull.equations[neighbour], atol=1e-6):
+                ends.append(hull.points[np.delete(hull.simplices[face], corner)])
+    return np.concatenate(ends)
+
 
 def footprint_polygon(outline: npt.ArrayLike, holes: Sequence[npt.ArrayLike], name: str) -> shapely.Polygon:
     """A checked polygon; `ValueError` says where an outline crosses itself."""
-    outline = np.asarray(outline, dtype=float)
-    if outline.ndim != 2 or outline.shape[1] < 2 or len(np.unique(outline[:, :2], axis=0)) < 3:
-        raise ValueError(f"footprint of {name!r} needs at least three different corners (x, y)")
-    if not np.isfinite(outline).all():
-        raise ValueError(f"footprint of {name!r} has a corner that is NaN or infinite")
-    polygon = shapely.Polygon(outline[:, :2], [np.asarray(hole, dtype=float)[:, :2] for hole in holes])
+    shell, *inner = (
+        checked_ring(ring, f"{part} of {name!r}")
+        for ring, part in [(outline, "footprint"), *((hole, "a hole in the footprint") for hole in holes)]
+    )
+    polygon = shapely.Polygon(shell, inner)
     if not polygon.is_valid:
         raise ValueError(
             f"footprint of {name!r} is not a simple polygon: {shapely.is_valid_reason(polygon)}; "
@@ -162,9 +187,23 @@ def footprint_polygon(outline: npt.ArrayLike, holes: Sequence[npt.ArrayLike], na
     return polygon
 
 
+def checked_ring(ring: npt.ArrayLike, what: str) -> np.ndarray:
+    """Corners (M, 2) of an outline or a hole."""
+    corners = np.asarray(ring, dtype=float)
+    if corners.ndim != 2 or corners.shape[1] < 2 or len(np.unique(corners[:, :2], axis=0)) < 3:
+        raise ValueError(f"{what} needs at least three different corners (x, y)")
+    if not np.isfinite(corners).all():
+        raise ValueError(f"{what} has a corner that is NaN or infinite")
+    return corners[:, :2]
+
+
+def is_convex(polygon: shapely.Polygon) -> bool:
+    return not polygon.interiors and bool(np.isclose(polygon.area, polygon.convex_hull.area, rtol=1e-9, atol=0))
+
+
 def convex_parts(polygon: shapely.Polygon) -> list[np.ndarray]:
     """The polygon itself if it is convex, else triangles that cover it; each as corners (M, 2)."""
-    if not polygon.interiors and np.isclose(polygon.area, polygon.convex_hull.area, rtol=1e-9, atol=0):
+    if is_convex(polygon):
         return [shapely.get_coordinates(polygon)[:-1]]
     triangles = shapely.constrained_delaunay_triangles(polygon).geoms
     return [shapely.get_coordinates(triangle)[:3] for triangle in triangles if triangle.area > 1e-6 * polygon.area]

@@ -8,6 +8,7 @@ so clearance is measured to buildings alone, neither to the border nor to the gr
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -53,12 +54,9 @@ class City:
     def __post_init__(self) -> None:
         occupied = np.ascontiguousarray(self.occupied, dtype=bool)
         if occupied.ndim != 3 or occupied.size == 0:
-            raise ValueError(f"occupied must be a (nx, ny, nz) array with at least one voxel, got shape {occupied.shape}")
-        origin = np.asarray(self.origin, dtype=float)
-        if origin.shape != (3,) or not np.isfinite(origin).all():
-            raise ValueError(f"origin must be three finite numbers (x, y, z) in metres, got {self.origin!r}")
+            raise ValueError(f"occupied must be an array (nx, ny, nz) with at least one voxel, got {occupied.shape}")
         object.__setattr__(self, "occupied", occupied)
-        object.__setattr__(self, "origin", origin)
+        object.__setattr__(self, "origin", checked_origin(self.origin))
         object.__setattr__(self, "cell", checked_cell(self.cell))
         object.__setattr__(self, "buildings", tuple(self.buildings))
 
@@ -103,10 +101,10 @@ class City:
             low = np.min([building.bounds[0] for building in buildings], axis=0)
             high = np.max([building.bounds[1] for building in buildings], axis=0)
             around = np.array([margin, margin, 0.0])
-            origin = low - around if origin is None else np.asarray(origin, dtype=float)
+            origin = low - around if origin is None else checked_origin(origin)
             size = high + np.array([margin, margin, margin]) - origin if size is None else size
-        corner, extent = np.asarray(origin, dtype=float), np.asarray(size, dtype=float)
-        if extent.shape != (3,) or not (extent > 0).all():
+        corner, extent = checked_origin(origin), np.asarray(size, dtype=float)
+        if extent.shape != (3,) or not (np.isfinite(extent) & (extent > 0)).all():
             raise ValueError(f"size must be three positive extents (x, y, z) in metres, got {size!r}")
         shape = np.ceil(extent / cell - 1e-9)
         if shape.prod() > MOST_VOXELS:
@@ -143,8 +141,18 @@ class City:
         return clearance
 
     def cell_of(self, points: npt.ArrayLike) -> np.ndarray:
-        """Indices (..., 3) of the voxels in which points (..., 3) [m] lie; outside of the map they are out of range."""
-        return np.floor((np.asarray(points, dtype=float) - self.origin) / self.cell).astype(np.int64)
+        """Indices (..., 3) of the voxels in which points (..., 3) [m] lie; out of range outside of the map or for NaN.
+
+        Raises
+        ------
+        ValueError
+            If `points` hasn't shape (..., 3).
+        """
+        points = np.asarray(points, dtype=float)
+        if points.shape[-1:] != (3,):
+            raise ValueError(f"points must have shape (..., 3), got {points.shape}")
+        index = np.floor((points - self.origin) / self.cell)
+        return np.where(np.abs(index) < 2.0**62, index, -1).astype(np.int64)
 
     def center_of(self, index: npt.ArrayLike) -> np.ndarray:
         """Centres (..., 3) [m] of the voxels with indices (..., 3)."""
@@ -156,9 +164,11 @@ class City:
         Raises
         ------
         ValueError
-            If an index is outside of the map.
+            If an index is outside of the map or hasn't shape (..., 3).
         """
         index = np.asarray(index)
+        if index.shape[-1:] != (3,):
+            raise ValueError(f"index must have shape (..., 3), got {index.shape}")
         if ((index < 0) | (index >= self.shape)).any():
             raise ValueError(f"index lies outside of the map of {self.shape} voxels: {index.tolist()}")
         return np.ravel_multi_index(tuple(np.moveaxis(index, -1, 0)), self.shape)
@@ -207,10 +217,17 @@ class City:
             Voxels in order; out of range where the polyline leaves the map.
         length : (M,) array
             Length within each [m]; sums to the polyline's.
+
+        Raises
+        ------
+        ValueError
+            If `points` hasn't shape (N, 3) or is not finite.
         """
         points = np.asarray(points, dtype=float)
+        if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
+            raise ValueError(f"points must be finite and have shape (N, 3), got shape {points.shape}")
         voxels, lengths = [], []
-        for start, end in zip(points[:-1], points[1:], strict=True):
+        for start, end in pairwise(points):
             index, leave = voxels_on_segment((start - self.origin) / self.cell, (end - self.origin) / self.cell)
             voxels.append(index)
             lengths.append(np.diff(leave, prepend=0.0) * np.linalg.norm(end - start))
@@ -223,6 +240,13 @@ def checked_cell(cell: float) -> float:
     if not (np.isfinite(cell) and cell > 0):
         raise ValueError(f"cell must be the edge of a voxel in metres, above 0, got {cell!r}")
     return float(cell)
+
+
+def checked_origin(origin: npt.ArrayLike) -> np.ndarray:
+    corner = np.asarray(origin, dtype=float)
+    if corner.shape != (3,) or not np.isfinite(corner).all():
+        raise ValueError(f"origin must be three finite numbers (x, y, z) in metres, got {origin!r}")
+    return corner
 
 
 def rasterise(building: Building, occupied: np.ndarray, cell: float, origin: np.ndarray) -> None:

@@ -5,7 +5,7 @@ from uavlab.city.model import City
 
 
 def table1_buildings() -> tuple[Building, ...]:
-    """The five buildings of REPARE Table 1, in the paper's order; colours from the Okabe-Ito palette.
+    """The five buildings of REPARE Table 1, in the paper's order; colours are pale, so that routes stand out.
 
     Building 1 is an L with a ridge along both wings. Its two wings are convex: each is the hull of its walls to
     65 m and of its half of the ridge at 70 m.
@@ -15,20 +15,28 @@ def table1_buildings() -> tuple[Building, ...]:
         Building.roofed([(60, 35), (95, 35), (95, 45), (60, 45)], 65, [(65, 40, 70), (90, 40, 70)]),
     )
     return (
-        Building(wings[0].pieces + wings[1].pieces, "1 notch", "#E69F00"),
+        Building(wings[0].pieces + wings[1].pieces, "1 notch", "#F3C77A"),
         Building.roofed(
-            [(10, 15), (35, 15), (35, 55), (10, 55)], 60, [(22, 25, 65), (22, 45, 65)], name="2 hip roof", color="#56B4E9"
+            [(10, 15), (35, 15), (35, 55), (10, 55)],
+            60,
+            [(22, 25, 65), (22, 45, 65)],
+            name="2 hip roof",
+            color="#B5DFF5",
         ),
         Building.roofed(
             [(70, 60), (90, 60), (90, 80), (70, 80)],
             80,
             [(75, 65, 90), (85, 65, 90), (85, 75, 90), (75, 75, 90)],
             name="3 frustum",
-            color="#009E73",
+            color="#8FD3BF",
         ),
-        Building.prism([(15, 65), (10, 75), (50, 95), (55, 85)], 60, bottom=45, name="4 floating", color="#0072B2"),
+        Building.prism([(15, 65), (10, 75), (50, 95), (55, 85)], 60, bottom=45, name="4 floating", color="#93B5DD"),
         Building.roofed(
-            [(45, 55), (48, 53), (50, 55), (50, 60), (48, 62), (45, 60)], 95, (48, 58, 99), name="5 spire", color="#F0E442"
+            [(45, 55), (48, 53), (50, 55), (50, 60), (48, 62), (45, 60)],
+            95,
+            (48, 58, 99),
+            name="5 spire",
+            color="#F5EE9E",
         ),
     )
 

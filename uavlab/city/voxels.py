@@ -3,6 +3,8 @@
 Coordinates here are in cells: voxel (i, j, k) covers [i, i+1) × [j, j+1) × [k, k+1), its centre is (i+½, j+½, k+½).
 """
 
+import math
+
 import numpy as np
 
 from uavlab.compiled import compiled
@@ -11,8 +13,7 @@ ROUNDING = 1e-12
 """Shares of a segment that differ by less are the same point."""
 
 
-@compiled
-def squared_clearance(occupied):
+def squared_clearance(occupied: np.ndarray) -> np.ndarray:
     """Squared distance [cells²] from each centre to the nearest surface of an occupied voxel, (nx, ny, nz).
 
     0 inside; infinite everywhere when nothing is occupied. One axis after the other, the minimum over all obstacles
@@ -21,15 +22,16 @@ def squared_clearance(occupied):
     by half a cell and more.
     """
     squared = np.where(occupied, 0.0, np.inf)
+    for axis in range(3):
+        envelope_along_last_axis(np.moveaxis(squared, axis, 2))
+    return squared
+
+
+@compiled
+def envelope_along_last_axis(squared):
     for i in range(squared.shape[0]):
         for j in range(squared.shape[1]):
-            lower_envelope(squared[i, j, :])
-        for k in range(squared.shape[2]):
-            lower_envelope(squared[i, :, k])
-    for j in range(squared.shape[1]):
-        for k in range(squared.shape[2]):
-            lower_envelope(squared[:, j, k])
-    return squared
+            lower_envelope(squared[i, j])
 
 
 @compiled
@@ -79,15 +81,15 @@ def voxels_on_segment(start, end):
     voxels : (M, 3) int array
     leave : (M,) float array, increasing to 1; a point gives its one voxel.
     """
-    voxel = np.floor(start).astype(np.int64)
-    capacity = 4 + int(np.abs(np.floor(end) - voxel).sum())
-    voxels = np.empty((capacity, 3), np.int64)
-    leave = np.empty(capacity)
+    voxel = np.empty(3, np.int64)
     step = np.zeros(3, np.int64)
     crossing = np.full(3, np.inf)  # share of the segment at the next face of each axis
     between = np.full(3, np.inf)  # share of the segment from face to face
+    capacity = 4
     for axis in range(3):
         extent = end[axis] - start[axis]
+        voxel[axis] = math.floor(start[axis])
+        capacity += abs(math.floor(end[axis]) - voxel[axis])
         if extent > 0:
             step[axis] = 1
             between[axis] = 1.0 / extent
@@ -96,14 +98,17 @@ def voxels_on_segment(start, end):
             step[axis] = -1
             between[axis] = -1.0 / extent
             crossing[axis] = (voxel[axis] - start[axis]) / extent
+    voxels = np.empty((capacity, 3), np.int64)
+    leave = np.empty(capacity)
     count = 0
     reached = 0.0
     while True:
         face = min(1.0, crossing[0], crossing[1], crossing[2])
         if face > 1.0 - ROUNDING:
             face = 1.0
-        if face > reached or count == 0 and face == 1.0:
-            voxels[count] = voxel
+        if face > reached or (count == 0 and face == 1.0):
+            for axis in range(3):
+                voxels[count, axis] = voxel[axis]
             leave[count] = face
             count += 1
         if face == 1.0:

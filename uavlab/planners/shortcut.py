@@ -5,6 +5,7 @@ the least over i < j of best[i] plus the straight line from i to j, if nothing i
 the edge or the corner of an obstacle is blocked, the same rule as for the moves on the grid.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -75,7 +76,7 @@ def cheapest_subset(points, blocked, price):
     best[0] = 0.0
     for j in range(1, len(points)):
         for i in range(j):
-            at_least = least_price * np.sqrt(((points[j] - points[i]) ** 2).sum())
+            at_least = least_price * distance(points[i], points[j])
             if best[i] + at_least < best[j] - 1e-9:
                 cost = best[i] + line_cost(blocked, price, points[i], points[j])
                 if cost < best[j] - 1e-9:
@@ -90,7 +91,7 @@ def cheapest_subset(points, blocked, price):
 def line_cost(blocked, price, start, end):
     """Integral of the price along a straight line [cells], its length without one; infinite if it is blocked."""
     voxels, leave = voxels_on_segment(start, end)
-    length = np.sqrt(((end - start) ** 2).sum())
+    length = distance(start, end)
     cost = 0.0
     entered = 0.0
     for m in range(len(voxels)):
@@ -100,6 +101,11 @@ def line_cost(blocked, price, start, end):
             cost += (leave[m] - entered) * length * price[voxels[m, 0], voxels[m, 1], voxels[m, 2]]
             entered = leave[m]
     return cost if price is not None else length
+
+
+@compiled
+def distance(start, end):
+    return math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2 + (end[2] - start[2]) ** 2)
 
 
 @compiled

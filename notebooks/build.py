@@ -1,0 +1,157 @@
+"""Build the notebooks from their sources, or say which are stale.
+
+`notebooks/src/*.py` (jupytext, py:percent) is what is edited and reviewed. `python notebooks/build.py` brings each
+`notebooks/*.ipynb` up to date and runs it in a fresh kernel; figures and printed results stay in, 3D pages are taken out
+(they come back with Run All, a still picture stands for them). Exercises are their solutions with the answers taken
+out. `--check` changes nothing and fails if anything is stale.
+"""
+
+import argparse
+import re
+import sys
+from pathlib import Path
+
+import jupytext
+import nbformat
+from nbclient import NotebookClient
+from nbformat import NotebookNode
+
+HERE = Path(__file__).resolve().parent
+SOURCES = HERE / "src"
+SOLUTION = re.compile(r"^([ \t]*)### BEGIN SOLUTION.*?### END SOLUTION[ \t]*$", re.DOTALL | re.MULTILINE)
+SECONDS_PER_CELL = 300
+
+
+def main() -> int:
+    command = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    command.add_argument("names", nargs="*", help="only these, as in 06_astar; default: all that are stale")
+    command.add_argument("--all", action="store_true", help="run all of them, stale or not")
+    command.add_argument("--check", action="store_true", help="only say what is stale; exit 1 if anything is")
+    options = command.parse_args()
+    sources = [path for path in sorted(SOURCES.rglob("*.py")) if not options.names or path.stem in options.names]
+    if not sources:
+        command.error(f"no source in {SOURCES} is called {' or '.join(options.names)}")
+    stale = {source: reason for source in sources if (reason := staleness(source))}
+    orphans = [] if options.names else orphaned()
+    if options.check:
+        for source, reason in stale.items():
+            print(f"stale: {target(source).relative_to(HERE.parent)}: {reason}; run python notebooks/build.py")
+        for orphan in orphans:
+            print(f"no source: {orphan.relative_to(HERE.parent)}")
+        print(f"{len(sources)} notebooks, {len(stale)} stale, {len(orphans)} without a source")
+        return 1 if stale or orphans else 0
+    for source in sources if options.all or options.names else stale:
+        print(f"running {source.relative_to(SOURCES)}", flush=True)
+        write(executed(jupytext.read(source)), target(source))
+        if is_solution(source):
+            write(exercise(source), exercise_target(source))
+    return 0
+
+
+def target(source: Path) -> Path:
+    """The notebook that belongs to a source."""
+    return HERE / source.relative_to(SOURCES).with_suffix(".ipynb")
+
+
+def is_solution(source: Path) -> bool:
+    return source.parent.name == "solutions"
+
+
+def exercise_target(source: Path) -> Path:
+    return HERE / "exercises" / f"{source.stem}.ipynb"
+
+
+def staleness(source: Path) -> str:
+    """Why a notebook has to be built again; empty when it hasn't."""
+    path = target(source)
+    if not path.exists():
+        return "missing"
+    notebook = nbformat.read(path, as_version=4)
+    wanted = jupytext.read(source)
+    if [(c.cell_type, c.source, tags(c)) for c in notebook.cells] != [
+        (c.cell_type, c.source, tags(c)) for c in wanted.cells
+    ]:
+        return "its cells differ from its source"
+    code = [cell for cell in notebook.cells if cell.cell_type == "code" and cell.source.strip()]
+    if [cell.execution_count for cell in code] != list(range(1, len(code) + 1)):
+        return "not run from top to bottom"
+    if any(output.output_type == "error" for cell in code for output in cell.outputs):
+        return "a cell failed"
+    if path.read_text(encoding="utf-8") != text_of(stripped(notebook)):
+        return "has outputs or metadata that don't belong"
+    if is_solution(source):
+        exercises = exercise_target(source)
+        if not exercises.exists() or exercises.read_text(encoding="utf-8") != text_of(exercise(source)):
+            return "its exercise differs"
+    return ""
+
+
+def orphaned() -> list[Path]:
+    """Notebooks that no source stands behind."""
+    sources = list(SOURCES.rglob("*.py"))
+    known = {target(source) for source in sources} | {exercise_target(s) for s in sources if is_solution(s)}
+    return sorted(path for path in HERE.rglob("*.ipynb") if path not in known and ".ipynb_checkpoints" not in path.parts)
+
+
+def executed(notebook: NotebookNode) -> NotebookNode:
+    """The notebook run from top to bottom in a fresh kernel, stripped."""
+    client = NotebookClient(
+        notebook, timeout=SECONDS_PER_CELL, record_timing=False, resources={"metadata": {"path": str(HERE)}}
+    )
+    client.execute()
+    return stripped(notebook)
+
+
+def stripped(notebook: NotebookNode) -> NotebookNode:
+    """The notebook without what changes from run to run or is too large to keep."""
+    notebook.metadata = nbformat.from_dict(
+        {
+            "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
+            "language_info": {"name": "python"},
+        }
+    )
+    for number, cell in enumerate(notebook.cells):
+        cell.id = f"cell-{number:02d}"
+        cell.metadata = nbformat.from_dict({"tags": tags(cell)} if tags(cell) else {})
+        if cell.cell_type == "code":
+            cell.outputs = [output for output in map(kept, cell.outputs) if output is not None]
+    return notebook
+
+
+def kept(output: NotebookNode) -> NotebookNode | None:
+    """An output as it is stored: scenes as their still picture, sliders and warnings not at all."""
+    if output.output_type == "stream" and output.name == "stderr":
+        return None
+    data = output.get("data", {})
+    if "application/vnd.jupyter.widget-view+json" in data:
+        return None
+    if "uavlab-scene" in data.get("text/html", ""):
+        del data["text/html"]
+    return output
+
+
+def exercise(source: Path) -> NotebookNode:
+    """A solutions notebook with the answers taken out and nothing run."""
+    notebook = stripped(jupytext.read(source))
+    notebook.cells = [cell for cell in notebook.cells if "solution" not in tags(cell)]
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            cell.source = SOLUTION.sub(r"\1# your answer\n\1raise NotImplementedError", cell.source)
+    return notebook
+
+
+def tags(cell: NotebookNode) -> list[str]:
+    return list(cell.metadata.get("tags", []))
+
+
+def write(notebook: NotebookNode, path: Path) -> None:
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(text_of(notebook), encoding="utf-8")
+
+
+def text_of(notebook: NotebookNode) -> str:
+    return nbformat.writes(notebook) + "\n"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,217 @@
+"""City: codes, cells, freedom, clearance, traversal, and what is refused."""
+
+import itertools
+import re
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from uavlab.city import Building, City
+
+BOX = Building.prism([(2, 2), (5, 2), (5, 4), (2, 4)], 3, name="box")
+EMPTY = np.zeros((4, 5, 6), bool)
+
+
+def random_city(seed):
+    rng = np.random.default_rng(seed)
+    occupied = rng.random(rng.integers(3, 9, 3)) < rng.uniform(0.02, 0.3)
+    return City(occupied, cell=rng.uniform(0.3, 7), origin=rng.uniform(-1e3, 1e3, 3))
+
+
+@given(st.tuples(*[st.integers(1, 9)] * 3), st.data())
+@settings(deadline=None)
+def test_code_and_index_are_inverse_of_each_other(shape, data):
+    city = City(np.zeros(shape, bool))
+    i, j, k = index = tuple(data.draw(st.integers(0, n - 1)) for n in shape)
+    code = city.code_of(index)
+    assert code == k + shape[2] * (j + shape[1] * i)
+    assert city.index_of(code).tolist() == list(index)
+
+
+def test_codes_number_all_voxels_as_ravel_does():
+    city = City(np.random.default_rng(0).random((4, 3, 5)) < 0.5)
+    codes = np.arange(60)
+    assert np.array_equal(city.code_of(city.index_of(codes)), codes)
+    assert np.array_equal(city.occupied[tuple(city.index_of(codes).T)], city.occupied.ravel())
+    assert city.index_of(codes.reshape(3, 4, 5)).shape == (3, 4, 5, 3)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_center_lies_in_its_cell_and_cell_covers_half_an_edge_around_it(seed):
+    city = random_city(seed)
+    index = city.index_of(np.arange(city.occupied.size))
+    for shift in itertools.product((-0.499, 0.0, 0.499), repeat=3):
+        assert np.array_equal(city.cell_of(city.center_of(index) + city.cell * np.array(shift)), index)
+    assert city.center_of((0, 0, 0)) == pytest.approx(city.origin + city.cell / 2)
+    assert city.bounds == pytest.approx(np.array([city.origin, city.origin + city.cell * np.array(city.shape)]))
+
+
+def test_a_cell_holds_its_lower_faces_but_not_its_upper_ones():
+    city = City(EMPTY, cell=2.0, origin=(10, 0, 0))
+    assert city.cell_of([(10, 0, 0), (11.999, 0, 0), (12, 0, 0), (9.999, 0, 0)])[:, 0].tolist() == [0, 0, 1, -1]
+
+
+def test_free_is_inside_and_not_occupied():
+    city = City.from_buildings([BOX], origin=(0, 0, 0), size=(8, 8, 8))
+    assert city.is_free([(1, 1, 1), (3, 3, 5), (7.9, 7.9, 7.9)]).all()
+    assert not city.is_free([(3, 3, 1), (2.1, 2.1, 2.9)]).any()
+    assert not city.is_free([(-0.1, 1, 1), (1, 8, 1), (1, 1, 8), (1e9, 1, 1)]).any()
+    assert city.is_free((1, 1, 1)).shape == ()
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e300])
+def test_what_is_no_place_is_not_free(value):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert not City(EMPTY).is_free((value, 1, 1))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_clearance_is_the_distance_from_center_to_nearest_occupied_voxel(seed):
+    city = random_city(seed)
+    centers = city.center_of(city.index_of(np.arange(city.occupied.size)))
+    low = city.origin + city.cell * np.argwhere(city.occupied)
+    outside = np.maximum(np.maximum(low[None] - centers[:, None], centers[:, None] - low[None] - city.cell), 0.0)
+    nearest = np.linalg.norm(outside, axis=-1).min(axis=1, initial=np.inf)
+    assert city.clearance.ravel() == pytest.approx(nearest, rel=1e-9, abs=1e-9 * city.cell)
+    assert np.array_equal(city.clearance == 0, city.occupied)
+
+
+def test_clearance_of_a_single_voxel_in_metres():
+    occupied = np.zeros((7, 7, 7), bool)
+    occupied[3, 3, 3] = True
+    clearance = City(occupied, cell=2.0, origin=(100, -50, 3)).clearance
+    assert clearance[3, 3, 3] == 0
+    assert clearance[4, 3, 3] == pytest.approx(1)
+    assert clearance[6, 3, 3] == pytest.approx(5)
+    assert clearance[5, 5, 3] == pytest.approx(3 * np.sqrt(2))
+    assert clearance[0, 0, 0] == pytest.approx(5 * np.sqrt(3))
+
+
+def test_clearance_is_infinite_without_obstacles_and_computed_once():
+    city = City(EMPTY)
+    assert np.isinf(city.clearance).all()
+    assert city.clearance is city.clearance
+
+
+grid_or_any = st.one_of(st.floats(-3, 9), st.integers(-6, 18).map(lambda half: half / 2))
+polylines = st.lists(st.tuples(grid_or_any, grid_or_any, grid_or_any), min_size=2, max_size=5)
+
+
+@given(polylines, st.floats(0.3, 5), st.tuples(*[st.floats(-100, 100)] * 3))
+@settings(deadline=None, max_examples=300)
+def test_traversal_stays_in_each_voxel_for_its_length(corners, cell, origin):
+    city = City(EMPTY, cell=cell, origin=origin)
+    points = city.origin + cell * np.array(corners)
+    length = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    index, stays = city.voxels_along(points)
+    assert stays.sum() == pytest.approx(length.sum(), abs=1e-9)
+    assert (stays >= 0).all()
+    flown = np.cumsum(stays)
+    ends = np.concatenate([[0], np.cumsum(length)])
+    for voxel, entered, left in zip(index, flown - stays, flown, strict=True):
+        if left - entered > 1e-9:
+            stay = [at_distance(points, ends, d) for d in (entered, (entered + left) / 2, left)]
+            low = city.origin + cell * voxel
+            assert (np.array(stay) >= low - 1e-6).all()  # convex: with its ends, all of the stay is inside
+            assert (np.array(stay) <= low + cell + 1e-6).all()
+
+
+def at_distance(points, ends, distance):
+    return np.array([np.interp(distance, ends, points[:, axis]) for axis in range(3)])
+
+
+def test_traversal_goes_through_corners_and_leaves_the_map():
+    index, stays = City(EMPTY, cell=2.0).voxels_along(np.array([(1, 1, 1), (7, 7, 7), (7, 7, -3)]))
+    assert index.tolist() == [[0] * 3, [1] * 3, [2] * 3, [3] * 3, [3, 3, 3], [3, 3, 2], [3, 3, 1], [3, 3, 0]] + [
+        [3, 3, -1],
+        [3, 3, -2],
+    ]
+    assert stays == pytest.approx([3**0.5, 2 * 3**0.5, 2 * 3**0.5, 3**0.5, 1, 2, 2, 2, 2, 1])
+
+
+def test_a_single_waypoint_stays_nowhere():
+    index, stays = City(EMPTY).voxels_along(np.array([(1.2, 2.3, 3.4)]))
+    assert index.tolist() == [[1, 2, 3]]
+    assert stays.tolist() == [0]
+
+
+def test_extent_is_by_default_the_buildings_and_a_margin():
+    floating = Building.prism([(0, 0), (1, 0), (1, 1)], 9, bottom=6)
+    city = City.from_buildings([BOX, floating], margin=4)
+    assert city.bounds.tolist() == [[-4, -4, 0], [9, 8, 13]]
+    assert city.buildings == (BOX, floating)
+    assert City.from_buildings([BOX], origin=(0, 0, 0), margin=4).bounds.tolist() == [[0, 0, 0], [9, 8, 7]]
+
+
+def test_extent_is_rounded_up_to_whole_cells():
+    assert City.from_buildings([], cell=0.7, origin=(0, 0, 0), size=(7, 7.1, 0.1)).shape == (10, 11, 1)
+
+
+def test_what_sticks_out_of_the_map_is_cut_off():
+    inside = City.from_buildings([BOX], origin=(3, 3, 1), size=(10, 10, 10))
+    assert inside.occupied.sum() == 2 * 1 * 2
+    assert inside.occupied[:2, 0, :2].all()
+    assert not City.from_buildings([BOX], origin=(50, 50, 50), size=(5, 5, 5)).occupied.any()
+
+
+def test_a_name_is_given_to_what_stands_at_a_point(table1):
+    assert table1.building_at((65, 20, 30)) == "building '1 notch'"
+    assert City(table1.occupied).building_at((65, 20, 30)) == "an obstacle"
+
+
+def test_a_city_keeps_what_it_was_given():
+    city = City([[[0, 1]]], cell=2, name="one", reference=(4.36, 52.0))
+    assert city.occupied.dtype == bool
+    assert city.occupied.tolist() == [[[False, True]]]
+    assert (city.cell, city.name, city.reference, city.buildings) == (2.0, "one", (4.36, 52.0), ())
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: City(EMPTY, cell=-1), "cell must be the edge of a voxel in metres, above 0, got -1"),
+        (lambda: City(EMPTY, cell=0), "above 0, got 0"),
+        (lambda: City(EMPTY, cell=np.nan), "above 0, got nan"),
+        (lambda: City(EMPTY, cell=np.inf), "above 0, got inf"),
+        (lambda: City.from_buildings([BOX], cell=-2), "above 0, got -2"),
+        (lambda: City(np.zeros((0, 3, 3), bool)), r"occupied must be .* at least one voxel, got .*\(0, 3, 3\)"),
+        (lambda: City(np.zeros((3, 3), bool)), r"occupied must be .* got .*\(3, 3\)"),
+        (lambda: City(EMPTY, origin=(0, 0)), r"origin must be three finite numbers .* got \(0, 0\)"),
+        (lambda: City(EMPTY, origin=(0, 0, np.nan)), "origin must be three finite numbers"),
+        (lambda: City.from_buildings([BOX], origin=(0, np.inf, 0), size=(3, 3, 3)), "origin must be three finite"),
+        (lambda: City.from_buildings([BOX], origin=(0, 0), size=(3, 3, 3)), "origin must be three finite"),
+        (lambda: City.from_buildings([]), "buildings is empty, .* give origin and size"),
+        (lambda: City.from_buildings([], size=(3, 3, 3)), "buildings is empty, .* give origin and size"),
+        (lambda: City.from_buildings([BOX], origin=(0, 0, 0), size=(3, 0, 3)), "size must be three positive extents"),
+        (lambda: City.from_buildings([BOX], origin=(0, 0, 0), size=(3, np.nan, 3)), "size must be three positive"),
+        (lambda: City.from_buildings([BOX], origin=(0, 0, 0), size=(3, np.inf, 3)), "size must be three positive"),
+        (lambda: City.from_buildings([BOX], origin=(0, 0, 0), size=3), "size must be three positive extents"),
+        (
+            lambda: City.from_buildings([BOX], cell=0.01, origin=(0, 0, 0), size=(10, 10, 10)),
+            "cell=0.01 m gives 1000 × 1000 × 1000 voxels .* more than 500,000,000: use a cell of at least 0.013 m",
+        ),
+        (lambda: City(EMPTY).code_of((4, 0, 0)), r"index lies outside of the map of \(4, 5, 6\) voxels: \[4, 0, 0\]"),
+        (lambda: City(EMPTY).code_of((0, -1, 0)), "index lies outside of the map"),
+        (lambda: City(EMPTY).code_of((1, 1)), r"index must have shape \(..., 3\), got \(2,\)"),
+        (lambda: City(EMPTY).index_of(120), "code must be from 0 to 119, got 120"),
+        (lambda: City(EMPTY).index_of([3, -1]), r"code must be from 0 to 119, got \[3, -1\]"),
+        (lambda: City(EMPTY).is_free((1, 1)), r"points must have shape \(..., 3\), got \(2,\)"),
+        (lambda: City(EMPTY).cell_of(1.0), r"points must have shape \(..., 3\), got \(\)"),
+        (lambda: City(EMPTY).voxels_along([(1, 1, 1), (1, np.inf, 1)]), "points must be finite"),
+        (lambda: City(EMPTY).voxels_along([(1, 1), (1, 2)]), r"points must .* shape \(N, 3\), got .*\(2, 2\)"),
+    ],
+)
+def test_bad_questions_are_refused_with_the_reason(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()
+
+
+def test_the_cell_that_a_refusal_suggests_is_accepted_by_the_limit():
+    with pytest.raises(ValueError, match="use a cell of at least") as refusal:
+        City.from_buildings([], cell=0.1, origin=(0, 0, 0), size=(1000, 1000, 100))
+    cell = float(re.search(r"at least ([\d.]+) m", str(refusal.value))[1])
+    assert 1000 * 1000 * 100 / cell**3 == pytest.approx(500e6, rel=0.05)

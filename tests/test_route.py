@@ -1,0 +1,186 @@
+"""Route: lengths, angles, the clearance of every metre, resampling, and its file."""
+
+import csv
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from uavlab.city import City
+from uavlab.route import Route
+
+ZIGZAG = Route([(0, 0, 0), (3, 4, 0), (3, 4, 12), (3, 4, 12)])
+
+
+def hallway():
+    """A hallway of 20 × 5 × 5 voxels with a wall one voxel thin across it."""
+    occupied = np.zeros((20, 5, 5), bool)
+    occupied[10] = True
+    return City(occupied)
+
+
+def test_length_and_distance_add_up_the_legs():
+    assert ZIGZAG.leg_lengths.tolist() == [5, 12, 0]
+    assert ZIGZAG.length == 17
+    assert ZIGZAG.distance.tolist() == [0, 5, 17, 17]
+
+
+@pytest.mark.parametrize(
+    ("leg", "pitch"),
+    [
+        ((1, 0, 0), 0.0),
+        ((3, 4, 5), np.pi / 4),
+        ((0, -2, -2), -np.pi / 4),
+        ((np.sqrt(3), 0, 1), np.pi / 6),
+        ((0, 0, 2), np.pi / 2),
+        ((0, 0, -2), -np.pi / 2),
+    ],
+)
+def test_pitch_is_the_climb_angle(leg, pitch):
+    assert Route([(1, 2, 3), np.add((1, 2, 3), leg)]).pitch == pytest.approx([pitch])
+
+
+@pytest.mark.parametrize("corners", [3, 4, 5, 6, 12])
+@pytest.mark.parametrize("way_round", [1, -1])
+def test_turns_of_a_regular_polygon_are_its_outer_angles(corners, way_round):
+    angle = way_round * 2 * np.pi * np.arange(corners + 2) / corners
+    polygon = Route(np.column_stack([np.cos(angle), np.sin(angle), 0.1 * np.arange(corners + 2)]))
+    assert polygon.turn == pytest.approx(np.full(corners, 2 * np.pi / corners))
+
+
+@pytest.mark.parametrize("heading", np.linspace(-3, 3, 7))
+def test_u_turn_is_half_a_circle(heading):
+    there = (np.cos(heading), np.sin(heading), 0.0)
+    assert Route([(0, 0, 0), there, (0, 0, 1)]).turn == pytest.approx([np.pi])
+
+
+def test_vertical_legs_keep_the_heading_of_the_leg_before():
+    corner = Route([(0, 0, 0), (1, 0, 0), (1, 0, 5), (1, 0, 9), (1, 2, 9)])
+    assert corner.turn == pytest.approx([0, 0, np.pi / 2])
+    assert Route([(0, 0, 0), (0, 0, 5), (1, 1, 5), (1, 2, 5)]).turn == pytest.approx([0, np.pi / 4])
+    assert Route([(0, 0, 0), (0, 0, 5), (0, 0, 2)]).turn.tolist() == [0]
+
+
+def test_a_straight_line_neither_turns_nor_climbs():
+    line = Route(np.outer(np.arange(5), (-1.0, 0.0, 0.0)))
+    assert not line.turn.any()
+    assert not line.pitch.any()
+
+
+def test_clearance_sees_a_thin_wall_between_two_waypoints():
+    city = hallway()
+    through = Route([(5.5, 2.5, 2.5), (15.5, 2.5, 2.5)])
+    assert city.clearance[5, 2, 2] == 4.5
+    assert city.clearance[15, 2, 2] == 4.5
+    assert through.clearance(city) == 0
+
+
+def test_clearance_profile_lists_every_voxel_at_the_middle_of_its_stay():
+    distance, clearance = Route([(5.5, 2.5, 2.5), (15.5, 2.5, 2.5)]).clearance_profile(hallway())
+    assert distance == pytest.approx([0.25, *range(1, 10), 9.75])
+    assert clearance == pytest.approx([4.5, 3.5, 2.5, 1.5, 0.5, 0, 0.5, 1.5, 2.5, 3.5, 4.5])
+
+
+def test_clearance_is_the_least_of_the_voxels_that_dense_sampling_meets():
+    rng = np.random.default_rng(3)
+    city = City(rng.random((12, 12, 12)) < 0.02, cell=2.5, origin=(-4, 7, 1))
+    for _ in range(50):
+        route = Route(rng.uniform(*city.bounds, (4, 3)))
+        index, stay = city.voxels_along(route.points)
+        sampled = set(map(tuple, city.cell_of(route.resample(0.01).points).tolist()))
+        assert set(map(tuple, index[stay > 0.01].tolist())) <= sampled <= set(map(tuple, index.tolist()))
+        assert route.clearance(city) == city.clearance[tuple(index.T)].min()
+
+
+def test_outside_of_the_map_there_is_no_clearance():
+    city = hallway()
+    distance, clearance = Route([(-1.5, 2.5, 2.5), (1.5, 2.5, 2.5)]).clearance_profile(city)
+    assert clearance == pytest.approx([0, 0, 9.5, 8.5])
+    assert distance == pytest.approx([0.25, 1, 2, 2.75])
+
+
+def test_clearance_of_one_waypoint_is_its_voxel_s_and_of_none_unknown():
+    assert Route([(5.5, 2.5, 2.5)]).clearance(hallway()) == 4.5
+    assert np.isnan(Route(np.empty((0, 3))).clearance(hallway()))
+    assert np.isinf(Route([(1, 1, 1), (2, 2, 2)]).clearance(City(np.zeros((3, 3, 3)))))
+
+
+coordinate = st.floats(-1e3, 1e3).map(lambda x: round(x, 3))
+routes = st.lists(st.tuples(coordinate, coordinate, coordinate), min_size=2, max_size=6).map(Route)
+
+
+@given(routes, st.floats(0.5, 500))
+@settings(deadline=None)
+def test_resampling_keeps_all_waypoints_and_the_length(route, step):
+    fine = route.resample(step)
+    assert fine.length == pytest.approx(route.length)
+    assert fine.leg_lengths.max() <= step * (1 + 1e-6)
+    position = 0
+    for waypoint in route.points:  # in order, to the last bit
+        position += int(np.flatnonzero((fine.points[position:] == waypoint).all(axis=1))[0])
+    assert np.array_equal(fine.points[-1], route.points[-1])
+
+
+def test_resampling_divides_legs_evenly_and_keeps_the_rest_of_the_route():
+    route = Route([(0, 0, 0), (3, 0, 0), (3, 1, 0)], planner="A*", cost=4.0, info={"expanded": 3})
+    fine = route.resample(1.0)
+    assert fine.points.tolist() == [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [3, 1, 0]]
+    assert (fine.planner, fine.cost, fine.info) == ("A*", 4.0, {"expanded": 3})
+    assert route.resample(100).points.tolist() == route.points.tolist()
+    assert len(Route(np.empty((0, 3))).resample(1).points) == 0
+
+
+@given(routes)
+@settings(deadline=None, max_examples=30)
+def test_csv_brings_back_every_float(tmp_path_factory, route):
+    path = tmp_path_factory.mktemp("route") / "route.csv"
+    route.to_csv(path)
+    with open(path, newline="", encoding="utf-8") as file:
+        header, *rows = csv.reader(file)
+    assert header == ["x_m", "y_m", "z_m", "distance_m"]
+    assert np.array_equal(np.array(rows, dtype=float), np.column_stack([route.points, route.distance]))
+
+
+def test_csv_of_no_route_is_its_header(tmp_path):
+    Route(np.empty((0, 3))).to_csv(tmp_path / "none.csv")
+    assert (tmp_path / "none.csv").read_text(encoding="utf-8").strip() == "x_m,y_m,z_m,distance_m"
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_less_than_two_waypoints_have_no_legs(count):
+    route = Route(np.ones((count, 3)))
+    assert route.length == 0
+    assert route.distance.tolist() == [0.0] * count
+    assert len(route.pitch) == len(route.turn) == len(route.leg_lengths) == 0
+
+
+def test_a_route_does_not_change_with_the_array_that_it_came_from():
+    points = np.zeros((2, 3))
+    route = Route(points)
+    points[1] = 5
+    assert route.length == 0
+
+
+def test_what_a_route_says_of_itself():
+    assert repr(ZIGZAG) == "<Route by given: 17.0 m, 4 waypoints>"
+    stuck = Route(np.empty((0, 3)), "A*", reached=False, reason="no free way")
+    assert repr(stuck) == "<Route by A*: not reached, no free way>"
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Route([1.0, 2.0, 3.0]), r"points must have shape \(N, 3\), got \(3,\)"),
+        (lambda: Route([(1.0, 2.0)]), r"points must have shape \(N, 3\), got \(1, 2\)"),
+        (lambda: Route([(1.0, 2.0, np.nan)]), "points must be finite: a waypoint is NaN or infinite"),
+        (lambda: Route([(1.0, np.inf, 2.0)]), "points must be finite"),
+        (lambda: ZIGZAG.resample(0), "step must be a distance in metres, above 0, got 0"),
+        (lambda: ZIGZAG.resample(-1.0), "above 0, got -1.0"),
+        (lambda: ZIGZAG.resample(np.nan), "above 0, got nan"),
+        (lambda: ZIGZAG.resample(np.inf), "above 0, got inf"),
+    ],
+)
+def test_bad_routes_are_refused_with_the_reason(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()

@@ -1,0 +1,197 @@
+"""`python -m uavlab`: plan a route through a city and draw it, as one HTML page that opens anywhere.
+
+Without arguments it takes the city of REPARE Table 1. The page holds the 3D scene, the profile of height and clearance, and a
+table of what was measured; it needs neither Jupyter nor a network.
+"""
+
+import argparse
+import base64
+import html
+import io
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from uavlab import __version__
+
+if TYPE_CHECKING:  # imported late, so that --help answers at once
+    from uavlab.city import City
+    from uavlab.route import Route
+
+TABLE1_FLIGHT = ((90.0, 18.0, 30.0), (20.0, 75.0, 75.0))
+"""From inside the notch of building 1 to above the floating building [m]."""
+
+PLANNERS = {
+    "astar": "A* over 26 neighbours",
+    "any-angle": "A*, then straight lines where nothing is in between",
+}
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; 0 when the route arrives, 1 when there is none, 2 for a wrong question."""
+    options = parser().parse_args(arguments)
+    try:
+        return run(options)
+    except (ValueError, OSError) as error:
+        print(f"uavlab: {error}", file=sys.stderr)
+        return 2
+
+
+def parser() -> argparse.ArgumentParser:
+    command = argparse.ArgumentParser(
+        prog="python -m uavlab",
+        description="Plan a route through a city and write it as one HTML page: 3D scene, profile, table.",
+    )
+    command.add_argument(
+        "--city",
+        default="table1",
+        metavar="NAME|FILE",
+        help="table1 (REPARE Table 1, the default), or a file: GeoJSON with heights, CityJSON, or .3dmap voxels",
+    )
+    command.add_argument("--cell", type=float, metavar="M", help="edge of a voxel in metres; default 1, for a file 2")
+    command.add_argument(
+        "--planner",
+        choices=PLANNERS,
+        default="any-angle",
+        help="; ".join(f"{name}: {what}" for name, what in PLANNERS.items()) + "; default %(default)s",
+    )
+    command.add_argument("--start", type=position, metavar="X,Y,Z", help="metres; default: near the south-west corner")
+    command.add_argument("--goal", type=position, metavar="X,Y,Z", help="metres; default: near the north-east corner")
+    command.add_argument(
+        "--clearance",
+        type=float,
+        default=3.5,
+        metavar="M",
+        help="least distance to obstacles in metres; default %(default)s, REPARE Table 4's for a light load in mild wind",
+    )
+    command.add_argument(
+        "--out", type=Path, default=Path("uavlab-route.html"), metavar="FILE", help="the page; default %(default)s"
+    )
+    command.add_argument("--version", action="version", version=f"uavlab {__version__}")
+    return command
+
+
+def position(text: str) -> tuple[float, ...]:
+    """Three numbers, as in 90,20,30."""
+    try:
+        coordinates = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        coordinates = ()
+    if len(coordinates) != 3:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a position: give three numbers in metres, as in 90,20,30")
+    return coordinates
+
+
+def run(options: argparse.Namespace) -> int:
+    """Plan, draw, write; print where the page is."""
+    from uavlab.planners import astar, shortcut
+
+    began = time.perf_counter()
+    city = load_city(options.city, options.cell)
+    start, goal = (
+        point if point is not None else default
+        for point, default in zip((options.start, options.goal), default_flight(city, options.clearance), strict=True)
+    )
+    route = astar(city, start, goal, min_clearance=options.clearance)
+    if options.planner == "any-angle":
+        route = shortcut(route, city, min_clearance=options.clearance)
+    try:
+        options.out.write_text(report(city, route, start, goal, options.clearance), encoding="utf-8")
+    except OSError as error:
+        raise OSError(f"can't write {options.out}: {error.strerror}; choose another file with --out") from error
+    print(f"{route.planner}: {route.length:.1f} m" if route.reached else f"not reached: {route.reason}")
+    print(f"{time.perf_counter() - began:.1f} s; open {options.out.resolve()}")
+    return 0 if route.reached else 1
+
+
+def load_city(name: str, cell: float | None) -> "City":
+    """A city by name, or from a file."""
+    from uavlab.city import read_city, table1_city
+
+    if name == "table1":
+        return table1_city(cell=1.0 if cell is None else cell)
+    if not Path(name).is_file():
+        raise ValueError(f"--city {name}: neither a known name (table1) nor a file")
+    return read_city(name, cell=2.0 if cell is None else cell)
+
+
+def default_flight(city: "City", clearance: float) -> tuple[np.ndarray, np.ndarray]:
+    """A flight across the map: Table 1's, else from the south-west to the north-east, amid the buildings."""
+    from uavlab.planners.grid import blocked_voxels
+
+    if city.name == "Table 1":
+        return np.array(TABLE1_FLIGHT[0]), np.array(TABLE1_FLIGHT[1])
+    free = np.argwhere(~blocked_voxels(city, clearance))
+    if len(free) == 0:
+        raise ValueError(f"--clearance {clearance:g}: no voxel of the map is that far from all obstacles; ask for less")
+    built = np.flatnonzero(city.occupied.any(axis=(0, 1)))
+    height = 0.4 * (built[-1] + 1 if len(built) else city.shape[2])
+    size = np.array(city.shape)
+    wanted = np.array([0.1, 0.1, 0.0]) * size + [0, 0, height], np.array([0.9, 0.9, 0.0]) * size + [0, 0, height]
+    nearest = [free[np.argmin(((free + 0.5 - point) ** 2).sum(axis=1))] for point in wanted]
+    return city.center_of(nearest[0]), city.center_of(nearest[1])
+
+
+def report(city: "City", route: "Route", start: np.ndarray, goal: np.ndarray, clearance: float) -> str:
+    """The page as HTML."""
+    from uavlab import plot, scene
+
+    picture = io.BytesIO()
+    plot.profile(city, route, safe_distance=clearance).savefig(picture, format="svg")
+    profile = base64.b64encode(picture.getvalue()).decode()
+    rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in table(city, route, start, goal))
+    return PAGE.format(
+        title=html.escape(f"{route.planner} through {city.name}"),
+        scene=html.escape(scene.page(city, route, safe_distance=clearance if clearance > 0 else None)),
+        profile=f'<img alt="height and clearance along the route" src="data:image/svg+xml;base64,{profile}">',
+        rows=rows,
+        version=__version__,
+    )
+
+
+def table(city: "City", route: "Route", start: np.ndarray, goal: np.ndarray) -> list[tuple[str, str]]:
+    """What was planned and measured, as name and value."""
+    from uavlab.planners.grid import show
+
+    rows = [
+        ("city", f"{city.name}: {' × '.join(map(str, city.shape))} voxels of {city.cell:g} m, "
+                 f"{city.occupied.mean():.1%} occupied, {len(city.buildings)} buildings"),
+        ("start, goal", f"{show(start)} m to {show(goal)} m"),
+        ("planner", route.planner),
+    ]  # fmt: skip
+    if route.reached:
+        rows += [
+            ("length", f"{route.length:.1f} m in {len(route.points) - 1} straight legs"),
+            ("least clearance", f"{route.clearance(city):.2f} m"),
+            ("steepest climb or descent", f"{np.degrees(np.abs(route.pitch).max()):.0f}°"),
+            ("sharpest turn", f"{np.degrees(route.turn.max(initial=0.0)):.0f}°"),
+        ]
+    else:
+        rows.append(("not reached", route.reason))
+    rows.append(("search", f"{route.info['expanded']:,} of {np.count_nonzero(~city.occupied):,} free nodes expanded"))
+    return [(name, html.escape(value)) for name, value in rows]
+
+
+PAGE = """<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>
+<style>
+body{{font:15px/1.5 system-ui,sans-serif;max-width:960px;margin:1em auto;padding:0 1em;color:#222}}
+iframe{{width:100%;height:560px;border:1px solid #ccc}} img{{width:100%}}
+th{{text-align:left;padding-right:2em;font-weight:600;vertical-align:top}}
+</style></head><body>
+<h1>{title}</h1>
+<iframe title="3D scene" srcdoc="{scene}"></iframe>
+<p>Drag to turn, scroll to zoom, right-drag to move.</p>
+<h2>Height and clearance along the route</h2>
+{profile}
+<h2>Measured</h2>
+<table>{rows}</table>
+<p>uavlab {version}</p>
+</body></html>
+"""
+
+if __name__ == "__main__":
+    sys.exit(main())

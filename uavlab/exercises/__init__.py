@@ -1,0 +1,59 @@
+"""Checks of the course's exercises: what is right, or what is wrong and why, without giving the answer away.
+
+`check("06.2", answer)` looks for exercise 2 of chapter 6. Each chapter is a module, each exercise a function of the
+answer that returns a hint, or nothing when the answer is right.
+"""
+
+import importlib
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What `check` found; true when the answer is right."""
+
+    number: str
+    hint: str
+
+    def __bool__(self) -> bool:
+        return not self.hint
+
+    def __repr__(self) -> str:
+        return f"{self.number}: right" if self else f"{self.number}: not yet. {self.hint}"
+
+
+def check(number: str, answer: Any) -> Verdict:
+    """Check the answer to an exercise.
+
+    Parameters
+    ----------
+    number : str
+        Chapter and exercise, as in "06.2".
+    answer : object
+        What the exercise asks for: a number, an array or a function.
+
+    Returns
+    -------
+    Verdict
+        True when the answer is right; its text says what is wrong and where to look.
+
+    Raises
+    ------
+    ValueError
+        If there is no such exercise.
+    """
+    chapter, _, exercise = number.partition(".")
+    try:
+        module = importlib.import_module(f"uavlab.exercises.chapter{chapter}")
+        hint_for = getattr(module, f"exercise_{exercise}")
+    except (ImportError, AttributeError):
+        raise ValueError(f"number must be that of an exercise, as in '06.2', got {number!r}") from None
+    if answer is None or answer is ...:
+        return Verdict(number, "There is no answer yet: put yours in the place of the dots.")
+    try:
+        return Verdict(number, hint_for(answer))
+    except NotImplementedError:
+        return Verdict(number, "There is no answer yet: the function still raises NotImplementedError.")
+    except Exception as error:
+        return Verdict(number, f"Your answer raises {type(error).__name__}: {error}")

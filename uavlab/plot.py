@@ -1,0 +1,296 @@
+"""Figures in matplotlib: plans from above, profiles along a route, sections, stills of a scene.
+
+Every function returns a `Figure`: the last line of a notebook's cell shows it, `figure.savefig("name.png")` writes it.
+Colours are those of Okabe and Ito, or of a map that is even in lightness, so that colour-blind readers can tell them
+apart.
+"""
+
+from collections.abc import Sequence
+
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+from uavlab.city import City
+from uavlab.route import Route
+
+ROUTE_COLORS = ("#D55E00", "#0072B2", "#000000", "#CC79A7", "#009E73", "#E69F00")
+SEQUENTIAL = matplotlib.colormaps["cividis"]
+DPI = 100
+SUN = np.array([-0.45, -0.7, 0.55])
+"""Where the light comes from in a still."""
+
+
+def route_colors(count: int) -> list[str]:
+    """A colour for each of `count` routes, as #rrggbb."""
+    return [ROUTE_COLORS[i % len(ROUTE_COLORS)] for i in range(count)]
+
+
+def sequential_color(share: float) -> str:
+    """The colour of a share from 0 (dark) to 1 (bright), as #rrggbb."""
+    return to_hex(SEQUENTIAL(share))
+
+
+def plan(city: City, *routes: Route) -> Figure:
+    """The city from above, darker where it is higher, with routes.
+
+    Parameters
+    ----------
+    city : City
+    routes : Route
+        Those without points are named in the legend.
+    """
+    figure, axes = new_figure(6.4, 5.4)
+    tops = np.where(city.occupied, (np.arange(city.shape[2]) + 1) * city.cell, 0).max(axis=2)
+    image = draw_map(axes, city, np.where(tops > 0, tops, np.nan), "Greys", vmin=0.0, vmax=1.3 * max(tops.max(), 1.0))
+    figure.colorbar(image, ax=axes, label="top of the buildings above the ground [m]", boundaries=None).ax.set_ylim(
+        0, max(tops.max(), 1.0)
+    )
+    draw_routes(axes, routes)
+    axes.set_title(city.name)
+    return finished(figure)
+
+
+def section(
+    city: City, height: float, values: np.ndarray | None = None, *routes: Route, label: str = "clearance [m]"
+) -> Figure:
+    """A horizontal section: buildings black, and values of the voxels at this height in colour.
+
+    Parameters
+    ----------
+    city : City
+    height : float
+        Where to cut [m].
+    values : (nx, ny, nz) array, optional
+        What to colour; the clearance by default.
+    routes : Route
+        Seen from above.
+    label : str
+        Of the colour bar, with a unit.
+
+    Raises
+    ------
+    ValueError
+        If the height lies outside of the map.
+    """
+    k = int(city.cell_of((city.origin[0], city.origin[1], height))[2])
+    if not 0 <= k < city.shape[2]:
+        low, high = city.bounds[:, 2]
+        raise ValueError(f"height must lie on the map, {low:g} to {high:g} m, got {height!r}")
+    figure, axes = new_figure(6.4, 5.4)
+    layer = (city.clearance if values is None else np.asarray(values))[:, :, k]
+    image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL)
+    figure.colorbar(image, ax=axes, label=label)
+    axes.set_facecolor("black")
+    draw_routes(axes, routes)
+    axes.set_title(f"{city.name}, {height:g} m above the ground (buildings black)")
+    return finished(figure)
+
+
+def profile(city: City, *routes: Route, safe_distance: float | None = None) -> Figure:
+    """Height and clearance along routes, with the distance to keep as a dashed line if it is given [m]."""
+    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7.2, 4.6), dpi=DPI, layout="constrained")
+    for route, color in zip(routes, route_colors(len(routes)), strict=True):
+        if len(route.points) < 2:
+            continue
+        above.plot(route.distance, route.points[:, 2] - city.origin[2], color=color, label=label_of(route))
+        distance, clearance = route.clearance_profile(city)
+        below.plot(distance, clearance, color=color)
+    if safe_distance is not None:
+        below.axhline(safe_distance, color="0.3", linestyle="--", linewidth=1)
+        below.annotate(f"to keep: {safe_distance:g} m", (0.995, safe_distance), xycoords=("axes fraction", "data"),
+                       ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
+    above.set_ylabel("height [m]")
+    above.set_ylim(bottom=0)
+    below.set_ylabel("clearance [m]")
+    below.set_ylim(bottom=0)
+    below.set_xlabel("distance flown [m]")
+    if above.lines:
+        above.legend(fontsize=8)
+    for axes in (above, below):
+        axes.grid(alpha=0.3)
+        axes.margins(x=0.01)
+    return finished(figure)
+
+
+def expansions(city: City, *routes: Route) -> Figure:
+    """Which columns of the map each search expanded, and when: dark first, bright last.
+
+    Parameters
+    ----------
+    city : City
+    routes : Route
+        Planned with `record=True`.
+
+    Raises
+    ------
+    ValueError
+        If a route didn't record its order, or none is given.
+    """
+    if not routes or any("order" not in route.info for route in routes):
+        raise ValueError("routes must be planned with record=True, at least one")
+    figure, all_axes = plt.subplots(
+        1, len(routes), figsize=(3.4 * len(routes) + 1, 3.7), dpi=DPI, squeeze=False, layout="constrained"
+    )
+    built = city.occupied.any(axis=2)
+    most = max(route.info["expanded"] for route in routes)
+    for axes, route in zip(all_axes[0], routes, strict=True):
+        order = route.info["order"]
+        first = np.full(city.shape[:2], np.inf)
+        index = city.index_of(order)
+        np.minimum.at(first, (index[:, 0], index[:, 1]), np.arange(len(order)))
+        draw_map(axes, city, np.where(built, 1.0, np.nan), "Greys", vmin=0, vmax=3)
+        image = draw_map(axes, city, np.where(np.isfinite(first), first, np.nan), SEQUENTIAL, vmin=0, vmax=most)
+        if len(route.points) > 1:
+            axes.plot(*route.points[:, :2].T, color=ROUTE_COLORS[0], linewidth=1.5)
+        axes.set_title(f"{route.info.get('heuristic', route.planner)}: {len(order):,} expanded", fontsize=10)
+    figure.colorbar(image, ax=all_axes, label="first expanded as number")
+    return finished(figure)
+
+
+def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
+    """Named values as horizontal bars, each with its number; `label` names the quantity and its unit."""
+    figure, axes = plt.subplots(figsize=(6.4, 0.5 * len(values) + 1.1), dpi=DPI, layout="constrained")
+    drawn = axes.barh(list(values), list(values.values()), color=ROUTE_COLORS[1])
+    axes.bar_label(drawn, fmt="{:,.4g}", padding=3)
+    axes.invert_yaxis()
+    axes.set_xlabel(label)
+    axes.set_title(title)
+    axes.margins(x=0.15)
+    axes.spines[["top", "right"]].set_visible(False)
+    return finished(figure)
+
+
+def still(city: City, *routes: Route, elevation_deg: float = 32.0, azimuth_deg: float = -60.0) -> Figure:
+    """The scene as a picture, for paper and previews: city and routes in three dimensions, equal scales.
+
+    Parameters
+    ----------
+    city : City
+    routes : Route
+    elevation_deg, azimuth_deg : float
+        From where it is seen [degrees]: height above the horizon, direction counted from east.
+    """
+    figure = plt.figure(figsize=(7.2, 5.4), dpi=DPI)
+    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    low, high = city.bounds
+    longest = float((high - low).max())
+    polygons, colors = [], []
+    for triangles, color in city_surface(city):
+        pieces = subdivided(triangles, longest / 14)
+        normals = np.cross(pieces[:, 1] - pieces[:, 0], pieces[:, 2] - pieces[:, 0])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True) + 1e-12
+        light = 0.75 + 0.25 * (normals @ (SUN / np.linalg.norm(SUN)))
+        polygons.append(pieces)
+        colors.append(light[:, None] * np.array(to_rgb(color)))
+    for route, color in zip(routes, route_colors(len(routes)), strict=True):
+        axes.plot([], [], [], color=color, linewidth=3, label=label_of(route))
+        if len(route.points) > 1:
+            ribbon = ribbons(route.resample(longest / 60).points, longest / 180)
+            polygons.append(ribbon)
+            colors.append(np.tile(to_rgb(color), (len(ribbon), 1)))
+    if polygons:
+        faces = np.concatenate(colors)
+        axes.add_collection3d(Poly3DCollection(np.concatenate(polygons), facecolors=faces, edgecolors=faces, lw=0.3))
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axes.set(xlabel="x, east [m]", ylabel="y, north [m]", zlabel="z, up [m]", title=city.name)
+    axes.set_aspect("equal")
+    axes.view_init(elevation_deg, azimuth_deg)
+    if routes:
+        axes.legend(loc="upper left", fontsize=8)
+    return finished(figure)
+
+
+def voxel_surface(city: City) -> np.ndarray:
+    """Triangles (T, 3, 3) [m] between occupied voxels and free ones or the border; rows of faces are one rectangle."""
+    padded = np.pad(city.occupied, 1)
+    triangles = []
+    for axis in range(3):
+        across, along = sorted({0, 1, 2} - {axis})
+        for side in (0, 1):
+            beyond = np.roll(padded, 1 - 2 * side, axis=axis)[1:-1, 1:-1, 1:-1]
+            exposed = np.moveaxis(city.occupied & ~beyond, along, -1)
+            steps = np.diff(exposed.astype(np.int8), axis=-1, prepend=0, append=0)
+            first, last = np.argwhere(steps == 1), np.argwhere(steps == -1)  # of each row: same order, so they pair up
+            corner, extent = np.zeros((2, len(first), 3))
+            kept = [a for a in range(3) if a != along]
+            corner[:, kept], corner[:, along] = first[:, :2], first[:, 2]
+            corner[:, axis] += side
+            extent[:, along] = last[:, 2] - first[:, 2]
+            step = np.eye(3)[across]
+            quad = [corner, corner + step, corner + step + extent, corner + extent]
+            if (side == 1) != (np.cross(step, np.eye(3)[along])[axis] > 0):
+                quad = quad[::-1]  # counter-clockwise seen from outside
+            triangles += [np.stack([quad[0], quad[1], quad[2]], axis=1), np.stack([quad[0], quad[2], quad[3]], axis=1)]
+    return city.origin + city.cell * np.concatenate(triangles)
+
+
+def city_surface(city: City) -> list[tuple[np.ndarray, str]]:
+    """Triangles and colour of each building, or of all voxels where the city knows no buildings."""
+    if city.buildings:
+        return [(building.triangles(), building.color) for building in city.buildings]
+    return [(voxel_surface(city), "lightsteelblue")] if city.occupied.any() else []
+
+
+def subdivided(triangles: np.ndarray, longest: float) -> np.ndarray:
+    """Triangles cut in halves until no edge is longer: small ones can be sorted by depth."""
+    while True:
+        edges = np.linalg.norm(np.roll(triangles, -1, axis=1) - triangles, axis=2)
+        large = edges.max(axis=1) > longest
+        if not large.any():
+            return triangles
+        first = edges[large].argmax(axis=1)
+        a, b, c = (triangles[large][np.arange(large.sum()), (first + corner) % 3] for corner in range(3))
+        middle = (a + b) / 2
+        halves = [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
+        triangles = np.concatenate([triangles[~large], *halves])
+
+
+def ribbons(points: np.ndarray, width: float) -> np.ndarray:
+    """Triangles of two crossed ribbons along a polyline: a line that has a depth of its own."""
+    start, end = points[:-1], points[1:]
+    along = end - start
+    across = np.cross(along, [0.0, 0.0, 1.0])
+    across[np.linalg.norm(across, axis=1) < 1e-9] = [1.0, 0.0, 0.0]
+    surfaces = []
+    for direction in (across, np.cross(along, across)):
+        side = width * direction / np.linalg.norm(direction, axis=1, keepdims=True)
+        surfaces.append(np.stack([start - side, end - side, end + side], axis=1))
+        surfaces.append(np.stack([start - side, end + side, start + side], axis=1))
+    return np.concatenate(surfaces)
+
+
+def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
+    return plt.subplots(figsize=(width, height), dpi=DPI, layout="constrained")
+
+
+def draw_map(axes: Axes, city: City, values: np.ndarray, colors, **limits):
+    """Values (nx, ny) on the ground plan, with axes in metres and equal scales."""
+    (west, south, _), (east, north, _) = city.bounds
+    axes.set(xlabel="x, east [m]", ylabel="y, north [m]", aspect="equal")
+    return axes.imshow(values.T, origin="lower", extent=(west, east, south, north), cmap=colors, **limits)
+
+
+def draw_routes(axes: Axes, routes: Sequence[Route]) -> None:
+    """Routes from above: a disc where each starts, a triangle at its goal."""
+    for route, color in zip(routes, route_colors(len(routes)), strict=True):
+        axes.plot(*route.points[:, :2].T, color="white", linewidth=3.5)
+        axes.plot(*route.points[:, :2].T, color=color, linewidth=2, label=label_of(route))
+        for point, marker in ((route.points[:1], "o"), (route.points[-1:], "^")):
+            axes.plot(*point[:, :2].T, marker, color=color, markersize=9, markeredgecolor="white")
+    if routes:
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), fontsize=8)
+
+
+def label_of(route: Route) -> str:
+    return f"{route.planner}, {route.length:.1f} m" if route.reached else f"{route.planner}: not reached"
+
+
+def finished(figure: Figure) -> Figure:
+    """The figure, closed for pyplot: a notebook shows it once, where the cell returns it."""
+    plt.close(figure)
+    return figure

@@ -1,0 +1,344 @@
+"""Scenes in three dimensions: the city, its routes and the UAV that flies them, in meshcat's viewer.
+
+A scene is one self-contained page: meshcat's viewer script and the scene's commands, packed. No server runs and no
+port is opened, so scenes work offline, in a notebook that was exported to HTML, and give the same bytes each
+time. Each kind of thing is one merged mesh. In a notebook `show` displays the page, and beside it a still picture
+for places that can't run scripts.
+"""
+
+import base64
+import gzip
+import html
+import io
+from functools import lru_cache
+from importlib.resources import files
+from typing import Any
+
+import meshcat
+import meshcat.geometry as g
+import numpy as np
+import umsgpack
+from matplotlib.colors import to_rgb
+from meshcat.animation import Animation
+from meshcat.transformations import translation_matrix
+
+from uavlab import plot
+from uavlab.city import City
+from uavlab.route import Route
+
+FRAMES_PER_SECOND = 30
+FLIGHT_SECONDS = 12.0
+EXPANSION_BATCHES = 40
+MOST_POINTS = 12_000
+"""Larger expansions are thinned out evenly, so that their page stays small."""
+FIELD_OF_VIEW_DEG = 40.0
+
+
+class Scene:
+    """A page with a scene in it; the last line of a notebook's cell shows it."""
+
+    def __init__(self, page: str, height: int, still: bytes) -> None:
+        self.page = page
+        self.height = height
+        self.still = still
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        frame = (
+            f'<div class="uavlab-scene"><iframe srcdoc="{html.escape(self.page)}" title="3D scene" '
+            f'style="width:100%;height:{self.height}px;border:0"></iframe></div>'
+        )
+        return {"text/html": frame, "image/png": base64.b64encode(self.still).decode(), "text/plain": "<3D scene>"}
+
+
+def show(
+    city: City,
+    *routes: Route,
+    safe_distance: float | None = None,
+    expansion: bool = False,
+    height: int = 480,
+) -> Scene:
+    """The scene for a notebook; arguments as for `page`, and the frame's height in pixels."""
+    picture = io.BytesIO()
+    plot.still(city, *routes).savefig(picture, format="png", dpi=72)
+    content = page(city, *routes, safe_distance=safe_distance, expansion=expansion)
+    return Scene(content, height, picture.getvalue())
+
+
+def page(
+    city: City,
+    *routes: Route,
+    safe_distance: float | None = None,
+    expansion: bool = False,
+    title: str | None = None,
+) -> str:
+    """One self-contained HTML page with the city, its routes, and a UAV that flies the first of them.
+
+    Parameters
+    ----------
+    city : City
+        Drawn from its buildings, roofs included; from its voxels where it knows no buildings.
+    routes : Route
+        Drawn as tubes, each in a colour of its own; routes that didn't arrive are named in the legend.
+    safe_distance : float, optional
+        Radius of a ball around the UAV [m]: the clearance it should keep.
+    expansion : bool
+        Show in which order the first route's planner expanded its nodes (`record=True`), as an animation.
+    title : str, optional
+        Of the page; by default the city's name.
+
+    Returns
+    -------
+    str
+        HTML, about 300 kB; needs no network.
+
+    Raises
+    ------
+    ValueError
+        If `expansion` is asked for without a route that recorded its order, or `safe_distance` is not above 0.
+    """
+    if safe_distance is not None and not safe_distance > 0:
+        raise ValueError(f"safe_distance must be the radius of a ball in metres, above 0, got {safe_distance!r}")
+    if expansion and not (routes and "order" in routes[0].info):
+        raise ValueError("expansion needs a first route planned with record=True")
+    window = CommandRecorder()
+    scene = meshcat.Visualizer(window=window)
+    set_stage(scene, city)
+    draw_city(scene["city"], city)
+    animation = Animation(default_framerate=FRAMES_PER_SECOND)
+    colors = plot.route_colors(len(routes))
+    for number, (route, color) in enumerate(zip(routes, colors, strict=True)):
+        if len(route.points) > 1:
+            draw_route(scene[f"route{number}"], city, route, color)
+    if expansion:
+        animate_expansion(scene["expansion"], city, routes[0].info["order"], animation)
+    elif routes and len(routes[0].points) > 1:
+        animate_flight(scene["uav"], city, routes[0], safe_distance, animation)
+    if animation.clips:
+        scene.set_animation(animation, repetitions=1000)
+    return window.page(title or city.name, legend(city, routes, colors))
+
+
+def legend(city: City, routes: tuple[Route, ...], colors: list[str]) -> str:
+    """What the colours mean and how large things are, as HTML."""
+    lines = [f"<b>{html.escape(city.name)}</b> · squares of {grid_spacing(city):g} m · x → east, y → north, z → up"]
+    for route, color in zip(routes, colors, strict=True):
+        text = f"{route.planner}: {route.length:.1f} m" if route.reached else f"{route.planner}: {route.reason}"
+        lines.append(f'<span style="color:{color}">&#9608;&#9608;</span> {html.escape(text)}')
+    if any(len(route.points) > 1 for route in routes):
+        lines.append("&#9679; start &nbsp; &#9650; goal")
+    return "<br>".join(lines)
+
+
+def set_stage(scene: meshcat.Visualizer, city: City) -> None:
+    """Ground, light and a camera that sees the whole map."""
+    low, high = city.bounds
+    size = high - low
+    center = (low + high) / 2
+    top = max((building.bounds[1, 2] for building in city.buildings), default=high[2])
+    center[2] = low[2] + 0.34 * (top - low[2])
+    reach = float(np.hypot(size[0], size[1]))
+    scene["/Background"].set_property("top_color", [0.86, 0.92, 1.0])
+    scene["/Background"].set_property("bottom_color", [1.0, 1.0, 1.0])
+    scene["/Axes"].set_property("visible", False)
+    scene["/Grid"].set_property("visible", False)
+    scene["/Lights/FillLight/<object>"].set_property("position", [-4.0, -7.0, 9.0])
+    scene["/Lights/FillLight/<object>"].set_property("intensity", 0.45)
+    scene.set_transform(translation_matrix(-center))  # the camera circles the origin
+    camera = scene["/Cameras/default/rotated/<object>"]
+    camera.set_property("fov", FIELD_OF_VIEW_DEG)
+    camera.set_property("near", reach / 100)
+    camera.set_property("far", 20 * reach)
+    camera.set_property("position", [0.45 * reach, 0.8 * reach, 1.1 * reach])  # east, up, south
+    corners = np.array([(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])])
+    ground = np.column_stack([corners, np.full(4, low[2] - 0.002 * reach)])
+    scene["ground"].set_object(mesh(ground[[[0, 1, 2], [0, 2, 3]]]), g.MeshBasicMaterial(color=0xE9E9E4))
+    spacing = grid_spacing(city)
+    lines = []
+    for axis, other in ((0, 1), (1, 0)):
+        for value in np.arange(np.ceil(low[axis] / spacing) * spacing, high[axis] + 1e-9, spacing):
+            ends = np.full((2, 3), low[2])
+            ends[:, axis] = value
+            ends[:, other] = low[other], high[other]
+            lines.append(ends)
+    draw_lines(scene["grid"], np.concatenate(lines), 0xB8B8B0)
+
+
+def grid_spacing(city: City) -> float:
+    """A round number of metres that divides the map into about ten squares."""
+    extent = float((city.bounds[1] - city.bounds[0])[:2].max())
+    magnitude = 10.0 ** np.floor(np.log10(extent / 10))
+    return float(magnitude * min((1, 2, 5, 10), key=lambda m: abs(extent / (magnitude * m) - 10)))
+
+
+def draw_city(scene: meshcat.Visualizer, city: City) -> None:
+    """All buildings as one mesh with their colours, and their edges as lines."""
+    if not city.buildings:
+        scene["voxels"].set_object(mesh(plot.voxel_surface(city)), g.MeshLambertMaterial(color=0xB0C4DE))
+        return
+    surfaces = [building.triangles() for building in city.buildings]
+    colors = [
+        np.tile(to_rgb(building.color), (3 * len(triangles), 1))
+        for building, triangles in zip(city.buildings, surfaces, strict=True)
+    ]
+    scene["buildings"].set_object(
+        mesh(np.concatenate(surfaces), np.concatenate(colors)), g.MeshLambertMaterial(vertexColors=True)
+    )
+    draw_lines(scene["edges"], np.concatenate([building.edges() for building in city.buildings]), 0x555555)
+
+
+def draw_route(scene: meshcat.Visualizer, city: City, route: Route, color: str) -> None:
+    """A route as a tube, a ball at its start and a cone at its goal."""
+    radius = 0.004 * float(np.linalg.norm(city.bounds[1] - city.bounds[0]))
+    paint = int(color.lstrip("#"), 16)
+    scene["tube"].set_object(mesh(tube(route.points, radius)), g.MeshLambertMaterial(color=paint))
+    scene["start"].set_object(g.Sphere(2.5 * radius), g.MeshLambertMaterial(color=paint))
+    scene["start"].set_transform(translation_matrix(route.points[0]))
+    cone = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 6 * radius]])
+    scene["goal"].set_object(mesh(tube(cone, 3 * radius, end_radius=0.0)), g.MeshLambertMaterial(color=paint))
+    scene["goal"].set_transform(translation_matrix(route.points[-1] - [0.0, 0.0, 3 * radius]))
+
+
+def animate_flight(
+    scene: meshcat.Visualizer, city: City, route: Route, safe_distance: float | None, animation: Animation
+) -> None:
+    """A quadrotor, larger than life, that flies the route at constant speed, again and again."""
+    scale = 0.02 * float(np.linalg.norm(city.bounds[1] - city.bounds[0]))
+    scene["body"].set_object(mesh(quadrotor(scale)), g.MeshLambertMaterial(color=0x222222, side=2))
+    if safe_distance is not None:
+        scene["clearance"].set_object(
+            g.Sphere(safe_distance), g.MeshLambertMaterial(color=0xFFFFFF, transparent=True, opacity=0.35)
+        )
+    scene.set_transform(translation_matrix(route.points[0]))
+    for point, share in zip(route.points, route.distance / max(route.length, 1e-9), strict=True):
+        with animation.at_frame(scene, round(share * FLIGHT_SECONDS * FRAMES_PER_SECOND)) as frame:
+            frame.set_transform(translation_matrix(point))
+
+
+def animate_expansion(scene: meshcat.Visualizer, city: City, order: np.ndarray, animation: Animation) -> None:
+    """Expanded nodes as points that appear in the order of their expansion, first ones dark, last ones bright."""
+    shown = order[:: -(-len(order) // MOST_POINTS)]
+    batches = np.array_split(shown, min(EXPANSION_BATCHES, len(shown)))
+    for number, nodes in enumerate(batches):
+        points = city.center_of(city.index_of(nodes)).T.astype(np.float32)
+        color = np.array(to_rgb(plot.sequential_color(number / max(len(batches) - 1, 1))), dtype=np.float32)
+        name = f"batch{number}"
+        scene[name].set_object(g.PointCloud(points, np.tile(color, (len(nodes), 1)).T, size=0.9 * city.cell))
+        appear = 1 + round(number * FLIGHT_SECONDS * FRAMES_PER_SECOND / len(batches))
+        for moment, visible in ((0, False), (appear, True), (round(1.2 * FLIGHT_SECONDS * FRAMES_PER_SECOND), True)):
+            with animation.at_frame(scene, moment) as frame:
+                frame[name].set_property("visible", "boolean", visible)
+
+
+def mesh(triangles: np.ndarray, colors: np.ndarray | None = None) -> g.TriangularMeshGeometry:
+    """Triangles (T, 3, 3) as a geometry; no corner is shared, so that the light shows each face flat."""
+    vertices = np.asarray(triangles, dtype=np.float32).reshape(-1, 3)
+    return g.TriangularMeshGeometry(vertices, np.arange(len(vertices)).reshape(-1, 3), color=colors)
+
+
+def draw_lines(scene: meshcat.Visualizer, ends: np.ndarray, color: int) -> None:
+    """Straight lines between each two of the points (2L, 3)."""
+    geometry = g.PointsGeometry(np.asarray(ends, dtype=np.float32).T)
+    scene.set_object(g.LineSegments(geometry, g.LineBasicMaterial(color=color)))
+
+
+def tube(points: np.ndarray, radius: float, *, end_radius: float | None = None, sides: int = 8) -> np.ndarray:
+    """Triangles (T, 3, 3) of a round tube along a polyline (N, 3); with `end_radius` each leg is a cone."""
+    angle = np.linspace(0.0, 2 * np.pi, sides + 1)[:, None]
+    triangles = []
+    for start, end in zip(points[:-1], points[1:], strict=True):
+        along = end - start
+        length = np.linalg.norm(along)
+        if length == 0:
+            continue
+        along = along / length
+        across = np.cross(along, [0.0, 0.0, 1.0] if abs(along[2]) < 0.9 else [1.0, 0.0, 0.0])
+        across /= np.linalg.norm(across)
+        ring = np.cos(angle) * across + np.sin(angle) * np.cross(along, across)
+        low, high = start + radius * ring, end + (radius if end_radius is None else end_radius) * ring
+        triangles.append(np.stack([low[:-1], low[1:], high[1:]], axis=1))
+        triangles.append(np.stack([low[:-1], high[1:], high[:-1]], axis=1))
+        triangles.append(np.stack([low[1:], low[:-1], np.broadcast_to(start, (sides, 3))], axis=1))
+        triangles.append(np.stack([high[:-1], high[1:], np.broadcast_to(end, (sides, 3))], axis=1))
+    return np.concatenate(triangles)
+
+
+def quadrotor(size: float) -> np.ndarray:
+    """Triangles of a small quadrotor, `size` metres from rotor axis to centre: two arms and four discs."""
+    tips = size * np.array([(1, 1, 0), (-1, 1, 0), (-1, -1, 0), (1, -1, 0)]) / np.sqrt(2)
+    parts = [tube(tips[[0, 2]], 0.08 * size), tube(tips[[1, 3]], 0.08 * size)]
+    axle = np.array([[0.0, 0.0, 0.1 * size], [0.0, 0.0, 0.14 * size]])
+    parts += [tube(tip + axle, 0.55 * size, sides=16) for tip in tips]
+    parts.append(tube(np.array([[0.0, 0.0, -0.15 * size], [0.0, 0.0, 0.15 * size]]), 0.3 * size))
+    return np.concatenate(parts)
+
+
+class CommandRecorder:
+    """Stands where meshcat expects its window to the server: keeps the commands, and packs them into a page."""
+
+    def __init__(self) -> None:
+        self.commands: dict[tuple[str, str], bytes] = {}
+        self.names: dict[str, str] = {}
+
+    def send(self, command: Any) -> None:
+        """Keep a command; a later one for the same thing replaces it."""
+        lowered = command.lower()
+        kind = lowered["type"] + lowered.get("property", "")
+        self.commands[lowered["path"], kind] = umsgpack.packb(self.stable(lowered))
+
+    def stable(self, value: Any) -> Any:
+        """The same value with random identifiers replaced by a count, so that the same scene gives the same bytes."""
+        if isinstance(value, dict):
+            return {key: self.stable(item) for key, item in value.items()}
+        if isinstance(value, list):
+            return [self.stable(item) for item in value]
+        if isinstance(value, str) and len(value) == 36 and value.count("-") == 4:
+            return self.names.setdefault(value, f"id{len(self.names)}")
+        return value
+
+    def page(self, title: str, caption: str) -> str:
+        """The whole page; the animation comes last, when all that it moves is there."""
+        ordered = sorted(self.commands.items(), key=lambda item: item[0][1] == "set_animation")
+        packed = b"".join(len(command).to_bytes(4, "big") + command for _, command in ordered)
+        return PAGE.format(
+            title=html.escape(title), legend=caption, viewer=viewer_script(), commands=compress(packed)
+        )
+
+
+@lru_cache(1)
+def viewer_script() -> str:
+    return compress(files("meshcat").joinpath("viewer/dist/main.min.js").read_bytes())
+
+
+def compress(content: bytes) -> str:
+    return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode()
+
+
+PAGE = """<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>{title}</title><style>
+body{{margin:0;font:13px/1.5 system-ui,sans-serif}}
+#pane{{width:100vw;height:100vh;overflow:hidden}}
+#legend{{position:absolute;left:8px;top:8px;padding:4px 10px;background:rgba(255,255,255,.85);border-radius:4px}}
+.dg.main{{display:none}}
+</style></head><body><div id="pane"></div><div id="legend">{legend}</div><script>
+const unpack = async text => {{
+  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+}};
+(async () => {{
+  const script = document.createElement("script");
+  script.textContent = new TextDecoder().decode(await unpack("{viewer}"));
+  document.head.appendChild(script);
+  const commands = new Uint8Array(await unpack("{commands}")), view = new DataView(commands.buffer);
+  const viewer = window.viewer = new MeshCat.Viewer(document.getElementById("pane"));
+  for (let at = 0; at < commands.length;) {{
+    const length = view.getUint32(at);
+    viewer.handle_command_bytearray(commands.slice(at + 4, at + 4 + length));
+    at += 4 + length;
+  }}
+  viewer.set_3d_pane_size();
+  document.body.dataset.ready = "yes";
+}})().catch(error => {{
+  document.getElementById("legend").append(" — this browser can't draw the scene: " + error.message);
+}});
+</script></body></html>
+"""
