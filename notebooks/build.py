@@ -1,9 +1,9 @@
 """Build the notebooks from their sources, or say which are stale.
 
 `notebooks/src/*.py` (jupytext, py:percent) is what is edited and reviewed. `python notebooks/build.py` brings each
-`notebooks/*.ipynb` up to date and runs it in a fresh kernel; figures and printed results stay in, 3D pages are taken out
-(they come back with Run All, a still picture stands for them). Exercises are their solutions with the answers taken
-out. `--check` changes nothing and fails if anything is stale.
+`notebooks/*.ipynb` up to date and runs it in a fresh kernel; figures and printed results stay in, 3D pages are taken
+out (they come back with Run All, a still picture stands for them). Exercises are their solutions with the answers
+taken out. `--check` changes nothing and fails if anything is stale.
 """
 
 import argparse
@@ -90,7 +90,9 @@ def orphaned() -> list[Path]:
     """Notebooks that no source stands behind."""
     sources = list(SOURCES.rglob("*.py"))
     known = {target(source) for source in sources} | {exercise_target(s) for s in sources if is_solution(s)}
-    return sorted(path for path in HERE.rglob("*.ipynb") if path not in known and ".ipynb_checkpoints" not in path.parts)
+    return sorted(
+        path for path in HERE.rglob("*.ipynb") if path not in known and ".ipynb_checkpoints" not in path.parts
+    )
 
 
 def executed(notebook: NotebookNode) -> NotebookNode:

@@ -1,7 +1,7 @@
 """`python -m uavlab`: plan a route through a city and draw it, as one HTML page that opens anywhere.
 
-Without arguments it takes the city of REPARE Table 1. The page holds the 3D scene, the profile of height and clearance, and a
-table of what was measured; it needs neither Jupyter nor a network.
+Without arguments it takes the city of REPARE Table 1. The page holds the 3D scene, the profile of height and
+clearance, and a table of what was measured; it needs neither Jupyter nor a network.
 """
 
 import argparse
@@ -65,7 +65,7 @@ def parser() -> argparse.ArgumentParser:
         type=float,
         default=3.5,
         metavar="M",
-        help="least distance to obstacles in metres; default %(default)s, REPARE Table 4's for a light load in mild wind",
+        help="least distance to obstacles in metres; default %(default)s (REPARE Table 4: light load, mild wind)",
     )
     command.add_argument(
         "--out", type=Path, default=Path("uavlab-route.html"), metavar="FILE", help="the page; default %(default)s"

@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numba
 
@@ -19,10 +19,11 @@ F = TypeVar("F", bound=Callable)
 def compiled(function: F) -> F:
     """Compile a function of numbers, arrays and named tuples with numba, cached on disk where that is possible."""
     try:
-        dispatcher = numba.njit(cache=True)(function)
+        dispatcher: Any = numba.njit(cache=True)(function)
     except RuntimeError:  # numba found no folder that it may write
         warn_once()
-        return numba.njit(function)
+        uncached: Any = numba.njit(function)
+        return uncached
     discard_stale(Path(dispatcher.stats.cache_path))
     return dispatcher
 

@@ -6,6 +6,7 @@ apart.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import matplotlib
 import matplotlib.pyplot as plt
@@ -176,7 +177,7 @@ def still(city: City, *routes: Route, elevation_deg: float = 32.0, azimuth_deg: 
         From where it is seen [degrees]: height above the horizon, direction counted from east.
     """
     figure = plt.figure(figsize=(7.2, 5.4), dpi=DPI)
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    axes: Any = figure.add_axes((0, 0, 1, 0.95), projection="3d", computed_zorder=False)
     low, high = city.bounds
     longest = float((high - low).max())
     polygons, colors = [], []
@@ -198,7 +199,7 @@ def still(city: City, *routes: Route, elevation_deg: float = 32.0, azimuth_deg: 
         axes.add_collection3d(Poly3DCollection(np.concatenate(polygons), facecolors=faces, edgecolors=faces, lw=0.3))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set(xlabel="x, east [m]", ylabel="y, north [m]", zlabel="z, up [m]", title=city.name)
-    axes.set_aspect("equal")
+    axes.set_box_aspect(high - low, zoom=1.1)
     axes.view_init(elevation_deg, azimuth_deg)
     if routes:
         axes.legend(loc="upper left", fontsize=8)

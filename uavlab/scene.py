@@ -12,6 +12,7 @@ import html
 import io
 from functools import lru_cache
 from importlib.resources import files
+from itertools import pairwise
 from typing import Any
 
 import meshcat
@@ -245,7 +246,7 @@ def tube(points: np.ndarray, radius: float, *, end_radius: float | None = None, 
     """Triangles (T, 3, 3) of a round tube along a polyline (N, 3); with `end_radius` each leg is a cone."""
     angle = np.linspace(0.0, 2 * np.pi, sides + 1)[:, None]
     triangles = []
-    for start, end in zip(points[:-1], points[1:], strict=True):
+    for start, end in pairwise(points):
         along = end - start
         length = np.linalg.norm(along)
         if length == 0:
@@ -299,9 +300,7 @@ class CommandRecorder:
         """The whole page; the animation comes last, when all that it moves is there."""
         ordered = sorted(self.commands.items(), key=lambda item: item[0][1] == "set_animation")
         packed = b"".join(len(command).to_bytes(4, "big") + command for _, command in ordered)
-        return PAGE.format(
-            title=html.escape(title), legend=caption, viewer=viewer_script(), commands=compress(packed)
-        )
+        return PAGE.format(title=html.escape(title), legend=caption, viewer=viewer_script(), commands=compress(packed))
 
 
 @lru_cache(1)
@@ -317,7 +316,7 @@ PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{title}</title><style>
 body{{margin:0;font:13px/1.5 system-ui,sans-serif}}
 #pane{{width:100vw;height:100vh;overflow:hidden}}
-#legend{{position:absolute;left:8px;top:8px;padding:4px 10px;background:rgba(255,255,255,.85);border-radius:4px}}
+#legend{{position:absolute;left:8px;bottom:8px;padding:4px 10px;background:rgba(255,255,255,.85);border-radius:4px}}
 .dg.main{{display:none}}
 </style></head><body><div id="pane"></div><div id="legend">{legend}</div><script>
 const unpack = async text => {{

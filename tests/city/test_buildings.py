@@ -58,7 +58,10 @@ def test_ell_with_courtyard_contains_neither_notch_nor_courtyard():
 
 VOLUMES = {
     "box": (Building.prism(SQUARE, 5, bottom=2), 4 * 4 * 3),
-    "gable": (Building.roofed([(0, 0), (10, 0), (10, 6), (0, 6)], 4, [(0, 3, 7), (10, 3, 7)]), 10 * 6 * 4 + 10 * 6 * 3 / 2),
+    "gable": (
+        Building.roofed([(0, 0), (10, 0), (10, 6), (0, 6)], 4, [(0, 3, 7), (10, 3, 7)]),
+        10 * 6 * 4 + 10 * 6 * 3 / 2,
+    ),
     "pyramid on walls": (Building.roofed(SQUARE, 3, (2, 2, 6)), 4 * 4 * 3 + 4 * 4 * 3 / 3),
     "frustum": (
         Building.hull([(0, 0, 0), (8, 0, 0), (8, 8, 0), (0, 8, 0), (2, 2, 6), (6, 2, 6), (6, 6, 6), (2, 6, 6)]),
@@ -124,7 +127,9 @@ def test_bounds_are_the_lowest_and_highest_corner():
 
 
 @pytest.mark.parametrize(
-    "outline", [ELL, ELL[::-1], [*ELL, ELL[0]], [(x, y, 99.0) for x, y in ELL]], ids=["as is", "clockwise", "closed", "3D"]
+    "outline",
+    [ELL, ELL[::-1], [*ELL, ELL[0]], [(x, y, 99.0) for x, y in ELL]],
+    ids=["as is", "clockwise", "closed", "3D"],
 )
 def test_outlines_may_run_either_way_closed_or_not(outline):
     building = Building.prism(outline, 3)

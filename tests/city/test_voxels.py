@@ -60,7 +60,7 @@ def crossed(start, end):
 @settings(deadline=None, max_examples=500)
 def test_segment_passes_the_voxels_between_its_crossings(start, end):
     if np.linalg.norm(end - start) < 1e-3:
-        end = start + (1.0, 0.25, -0.5)
+        end = start + np.array([1.0, 0.25, -0.5])
     voxels, leave = voxels_on_segment(start, end)
     expected_voxels, expected_leave = crossed(start, end)
     stay = np.diff(leave, prepend=0.0)

@@ -129,13 +129,22 @@ SMALL = City(WALLED)
 @pytest.mark.parametrize(
     ("ask", "message"),
     [
-        (lambda: node_at(SMALL, (2.5, 1, 1), "start"), r"start \(2.5, 1.0, 1.0\) lies in an obstacle; the nearest free"),
-        (lambda: node_at(SMALL, (9, 1, 1), "goal"), r"goal \(9.0, 1.0, 1.0\) lies outside of the map: x 0 to 4, y 0 to 4"),
+        (
+            lambda: node_at(SMALL, (2.5, 1, 1), "start"),
+            r"start \(2.5, 1.0, 1.0\) lies in an obstacle; the nearest free",
+        ),
+        (
+            lambda: node_at(SMALL, (9, 1, 1), "goal"),
+            r"goal \(9.0, 1.0, 1.0\) lies outside of the map: x 0 to 4, y 0 to 4",
+        ),
         (lambda: node_at(SMALL, (1, 4, 1), "goal"), "lies outside of the map"),
         (lambda: node_at(SMALL, (1, 1, -0.01), "start"), "lies outside of the map"),
         (lambda: node_at(SMALL, (1, np.nan, 1), "start"), r"start must be finite, got \(1.0, nan, 1.0\)"),
         (lambda: node_at(SMALL, (1, np.inf, 1), "goal"), "goal must be finite"),
-        (lambda: node_at(SMALL, (1, 1), "start"), r"start must be three numbers \(x, y, z\) in metres, got shape \(2,\)"),
+        (
+            lambda: node_at(SMALL, (1, 1), "start"),
+            r"start must be three numbers \(x, y, z\) in metres, got shape \(2,\)",
+        ),
         (lambda: node_at(SMALL, [(1, 1, 1)], "start"), r"start must be three numbers .* got shape \(1, 3\)"),
         (lambda: node_at(SMALL, 5, "start"), r"start must be three numbers .* got shape \(\)"),
         (
@@ -147,7 +156,7 @@ SMALL = City(WALLED)
         (lambda: node_at(City(np.ones((2, 2, 2))), (1, 1, 1), "goal"), "an obstacle; no voxel of the map is free"),
         (
             lambda: endpoints(City(WALLED, cell=2.0), (0.1, 0.1, 0.1), (1.9, 1.9, 1.9)),
-            r"start \(0.1, 0.1, 0.1\) and goal \(1.9, 1.9, 1.9\) lie in the same voxel: .* at least one cell \(2 m\) away",
+            r"start \(0.1, .*\) and goal \(1.9, .*\) lie in the same voxel: .* at least one cell \(2 m\) away",
         ),
         (lambda: endpoints(SMALL, (1, 1, 1), (1, 1, 1)), "lie in the same voxel"),
         (lambda: endpoints(SMALL, (1, 1, 1), (1, 1, 7)), "goal .* lies outside of the map"),

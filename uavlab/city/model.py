@@ -6,7 +6,7 @@ so clearance is measured to buildings alone, neither to the border nor to the gr
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 
@@ -46,7 +46,7 @@ class City:
 
     occupied: np.ndarray
     cell: float = 1.0
-    origin: npt.ArrayLike = (0.0, 0.0, 0.0)
+    origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
     buildings: tuple[Building, ...] = ()
     name: str = "city"
     reference: tuple[float, float] | None = None
@@ -122,7 +122,8 @@ class City:
     @property
     def shape(self) -> tuple[int, int, int]:
         """Number of voxels along x, y and z."""
-        return self.occupied.shape  # type: ignore[return-value]
+        nx, ny, nz = self.occupied.shape
+        return nx, ny, nz
 
     @property
     def bounds(self) -> np.ndarray:
@@ -189,7 +190,7 @@ class City:
     def inside(self, points: npt.ArrayLike) -> np.ndarray:
         """Whether points (..., 3) [m] lie in the map's box, (...) bool."""
         index = self.cell_of(points)
-        return ((index >= 0) & (index < self.shape)).all(axis=-1)
+        return np.all((index >= 0) & (index < self.shape), axis=-1)
 
     def is_free(self, points: npt.ArrayLike) -> np.ndarray:
         """Whether points (..., 3) [m] lie in free voxels, (...) bool; outside of the map is not free."""

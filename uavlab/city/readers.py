@@ -259,7 +259,7 @@ def earth_centred(lonlat: npt.ArrayLike) -> np.ndarray:
 
 
 def lowest_corner(corners: np.ndarray, advice: str) -> np.ndarray:
-    """Lowest of corners (N, 3) [m], axis by axis; `ValueError` with advice if they lie within 1 m or over 100 km apart."""
+    """Lowest of corners (N, 3) [m] on each axis; `ValueError` with advice if they span under 1 m or over 100 km."""
     x, y, _ = np.ptp(corners, axis=0)
     if not 1.0 <= max(x, y) <= 100e3:
         raise ValueError(f"the buildings cover {x:.3g} × {y:.3g} m, which is no city: {advice}")

@@ -112,9 +112,7 @@ def astar(
     return Route(city.center_of(city.index_of(nodes)), "A*", cost=cost, info=info)
 
 
-def penalty_zone(
-    city: City, safe_distance: float, *, penalty: float, shape: str = "ball"
-) -> np.ndarray:
+def penalty_zone(city: City, safe_distance: float, *, penalty: float, shape: str = "ball") -> np.ndarray:
     """Price per metre 1 + ω·O_risk: 1 in the open, more near obstacles (REPARE Eq. 12).
 
     Parameters
@@ -157,7 +155,9 @@ def ring_meets_obstacle(occupied: np.ndarray, radius: int) -> np.ndarray:
     inner = tuple(slice(radius, radius + n) for n in occupied.shape)
     padded = np.pad(occupied, radius)
     for move in MOVES:
-        near |= padded[tuple(slice(s.start + radius * m, s.stop + radius * m) for s, m in zip(inner, move, strict=True))]
+        near |= padded[
+            tuple(slice(s.start + radius * m, s.stop + radius * m) for s, m in zip(inner, move, strict=True))
+        ]
     return near
 
 

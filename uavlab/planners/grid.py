@@ -118,9 +118,7 @@ def nearest_allowed(city: City, position: np.ndarray, min_clearance: float) -> s
     return f"the nearest free point is {show(centers[np.argmin(((centers - position) ** 2).sum(axis=1))])}"
 
 
-def endpoints(
-    city: City, start: npt.ArrayLike, goal: npt.ArrayLike, min_clearance: float = 0.0
-) -> tuple[int, int]:
+def endpoints(city: City, start: npt.ArrayLike, goal: npt.ArrayLike, min_clearance: float = 0.0) -> tuple[int, int]:
     """Codes of the start's and the goal's voxel; `ValueError` if one can't be flown from or to, or both are one."""
     codes = node_at(city, start, "start", min_clearance), node_at(city, goal, "goal", min_clearance)
     if codes[0] == codes[1]:

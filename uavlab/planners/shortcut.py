@@ -18,9 +18,7 @@ from uavlab.planners.grid import blocked_voxels, checked_price, show
 from uavlab.route import Route
 
 
-def shortcut(
-    route: Route, city: City, *, price: npt.ArrayLike | None = None, min_clearance: float = 0.0
-) -> Route:
+def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, min_clearance: float = 0.0) -> Route:
     """The cheapest route over a subset of the waypoints.
 
     Parameters
@@ -53,8 +51,9 @@ def shortcut(
     if not np.isfinite(best).all():
         leg = int(np.flatnonzero(~np.isfinite(best))[0])
         raise ValueError(
-            f"route passes through a blocked voxel between waypoints {leg - 1} {show(route.points[leg - 1])} and "
-            f"{leg} {show(route.points[leg])}: shorten only routes that keep min_clearance={min_clearance:g} m themselves"
+            f"route passes through a blocked voxel between waypoints {leg - 1} {show(route.points[leg - 1])} "
+            f"and {leg} {show(route.points[leg])}: shorten only routes that themselves keep "
+            f"min_clearance={min_clearance:g} m"
         )
     kept = [len(points) - 1]
     while kept[-1] != 0:

@@ -1,0 +1,123 @@
+# ---
+# jupyter:
+#   kernelspec:
+#     display_name: Python 3 (ipykernel)
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Start here: a route through a city in five minutes
+#
+# A small UAV stands in the notch of an L-shaped building, 30 m above the ground. It has to get to a point above another
+# building. Which way is short, and which way is still safe when a gust pushes it a few metres to the side? This notebook goes
+# once from the city to a route that you can turn in your hands. The other notebooks open each step up.
+#
+# *Run All* (in the menu **Run**) executes everything and brings the 3D scenes to life. Until then a still picture
+# stands in their place.
+
+# %%
+import numpy as np
+
+from uavlab import plot, scene
+from uavlab.city import table1_city
+from uavlab.planners import astar, shortcut
+
+# %% [markdown]
+# ## The city
+#
+# REPARE, one of the three papers that this course works through, tests its planner in a city of five buildings
+# (its Table 1). A planner sees it as a million cubes of one metre, each free or occupied.
+
+# %%
+# NBVAL_CHECK_OUTPUT
+city = table1_city()
+print(f"{city.occupied.size:,} voxels, {city.occupied.sum():,} of them occupied ({city.occupied.mean():.1%})")
+for building in city.buildings:
+    print(f"  {building.name:<11} up to {building.bounds[1, 2]:.0f} m")
+
+# %%
+assert city.occupied.sum() == 144_858
+scene.show(city)
+
+# %% [markdown]
+# How such a grid is made, what it costs, and how to read a real city from a file: [04 cities](04_cities.ipynb).
+#
+# ## The shortest way
+#
+# A* (read: A star) finds the shortest route from voxel to voxel. Start and goal are in metres: x to the east, y to the
+# north, z up.
+
+# %%
+# NBVAL_CHECK_OUTPUT
+start, goal = (90, 18, 30), (20, 75, 75)
+shortest = astar(city, start, goal)
+print(f"{shortest.length:.1f} m, {shortest.info['expanded']:,} voxels looked at")
+print(f"nearest to a building: {shortest.clearance(city):.1f} m")
+
+# %%
+assert shortest.reached
+assert shortest.clearance(city) == 0.5  # it scrapes along the wall
+plot.profile(city, shortest)
+
+# %% [markdown]
+# It is the shortest way, and nobody would fly it: for a part of it the centre of the UAV is half a metre from a wall.
+#
+# ## A way that keeps its distance
+#
+# REPARE's Eq. 7 asks for a distance that covers how far gusts push the UAV, plus half its body; for a light load in mild
+# wind its Table 4 has 3.5 m. Voxels that are nearer to a wall are now closed. And since nothing forces a UAV to turn by 45°
+# or 90° from voxel to voxel, `shortcut` then joins by straight lines what can see each other.
+
+# %%
+# NBVAL_CHECK_OUTPUT
+safe_distance = 3.5
+safe = astar(city, start, goal, min_clearance=safe_distance)
+straight = shortcut(safe, city, min_clearance=safe_distance)
+for route in (shortest, safe, straight):
+    print(f"{route.planner:<14} {route.length:6.1f} m, nearest to a building {route.clearance(city):.1f} m")
+
+# %%
+assert safe.clearance(city) >= safe_distance
+assert straight.clearance(city) >= safe_distance
+assert straight.length < shortest.length  # keeping away costs less than the detours of the grid
+plot.profile(city, straight, shortest, safe_distance=safe_distance)
+
+# %% [markdown]
+# Seen from above, and in three dimensions. Drag the scene to turn it, scroll to zoom; the ball around the UAV is the
+# distance that it keeps.
+
+# %%
+plot.plan(city, straight, shortest)
+
+# %%
+scene.show(city, straight, shortest, safe_distance=safe_distance)
+
+# %% [markdown]
+# ## Your turn
+#
+# Move the goal, or ask for more distance. What happens when the distance is larger than half the gap between two
+# buildings? And when the goal itself is too near to a wall? A question that has no answer is refused, with what would do
+# instead:
+
+# %%
+# NBVAL_CHECK_OUTPUT
+try:
+    astar(city, start=(65, 20, 30), goal=goal)
+except ValueError as error:
+    print(error)
+
+# %% [markdown]
+# ## The way on
+#
+# | notebook | question |
+# |---|---|
+# | [04 cities](04_cities.ipynb) | What does a planner see of a city, and what does the resolution cost? |
+# | [06 A*](06_astar.ipynb) | Why is A* exact, which estimate is best, and what is wrong with REPARE's Eq. 13? |
+#
+# Each ends with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is right, and
+# if not, what to think about. The routes of this notebook as a file for other programs: `straight.to_csv("route.csv")`.
+
+# %%
+# NBVAL_CHECK_OUTPUT
+print(np.round(straight.points, 1))

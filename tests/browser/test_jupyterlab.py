@@ -1,0 +1,90 @@
+"""JupyterLab opens the first notebook and runs it from top to bottom, as a student does."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import nbformat
+import pytest
+from conftest import share_of_hue
+
+from uavlab.city import table1_city
+
+NOTEBOOK = Path(__file__).parents[2] / "notebooks" / "00_start_here.ipynb"
+
+
+@pytest.fixture
+def course(tmp_path):
+    """A folder with the notebook as it is before it was run."""
+    folder = tmp_path / "course"
+    folder.mkdir()
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
+    nbformat.write(notebook, folder / NOTEBOOK.name)
+    return folder
+
+
+@pytest.fixture
+def lab(course, tmp_path):
+    """Address of a JupyterLab on that folder, with settings of its own."""
+    environment = os.environ | {
+        name: str(tmp_path / name.lower())
+        for name in ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR", "IPYTHONDIR")
+    }
+    log = tmp_path / "jupyter.log"
+    command = [sys.executable, "-m", "jupyter", "lab", "--no-browser", "--ServerApp.port=0", "--allow-root"]
+    command += ["--ServerApp.ip=127.0.0.1", "--IdentityProvider.token=course", f"--ServerApp.root_dir={course}"]
+    with open(log, "w") as file:
+        server = subprocess.Popen(command, env=environment, stdout=file, stderr=file)
+    try:
+        yield address(server, log)
+    finally:
+        server.terminate()
+        server.wait(timeout=30)
+
+
+def address(server, log):
+    """The server's address, from its log, once it listens."""
+    for _ in range(240):
+        found = re.search(r"http://127\.0\.0\.1:\d+/", log.read_text())
+        if found and "is running at" in log.read_text():
+            return found[0]
+        assert server.poll() is None, log.read_text()
+        time.sleep(0.25)
+    raise AssertionError(log.read_text())
+
+
+def code_cells(course):
+    return [c for c in json.loads((course / NOTEBOOK.name).read_text())["cells"] if c["cell_type"] == "code"]
+
+
+def test_run_all_runs_every_cell_and_draws_the_scene(browser, lab, course, picture_of):
+    page = browser.new_page(viewport={"width": 1200, "height": 1000})
+    page.goto(f"{lab}lab/tree/{NOTEBOOK.name}?token=course")
+    page.get_by_role("heading", name="Start here").first.wait_for(timeout=120_000)
+    page.wait_for_selector("text=Python 3 (ipykernel)")
+    page.get_by_role("menuitem", name="Run", exact=True).click()
+    page.get_by_text("Run All Cells", exact=True).click()
+    for _ in range(120):
+        page.wait_for_timeout(1000)
+        page.keyboard.press("Control+s")
+        cells = code_cells(course)
+        if all(cell["execution_count"] for cell in cells):
+            break
+    assert [cell["execution_count"] for cell in cells] == list(range(1, len(cells) + 1))
+    assert not [output for cell in cells for output in cell["outputs"] if output["output_type"] == "error"]
+    frame = page.locator(".uavlab-scene iframe").first
+    frame.scroll_into_view_if_needed()
+    frame.element_handle().content_frame().wait_for_selector("body[data-ready=yes]", timeout=60_000)
+    page.wait_for_timeout(1500)
+    picture = picture_of(frame)
+    for building in table1_city().buildings[:3]:
+        assert share_of_hue(picture, building.color) > 0.003, building.name
+    picture_of(page, "-lab")
+    page.close()

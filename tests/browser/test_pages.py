@@ -1,0 +1,83 @@
+"""The pages that the library writes, in a real browser."""
+
+import subprocess
+import sys
+
+import pytest
+from conftest import shades_of_hue, share_of_hue
+
+from uavlab import plot, scene
+from uavlab.city import City, table1_city
+from uavlab.planners import astar
+
+
+@pytest.fixture
+def page(browser):
+    page = browser.new_page(viewport={"width": 1000, "height": 700})
+    errors = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("request", lambda request: errors.append(request.url) if request.url.startswith("http") else None)
+    yield page
+    page.close()
+    assert errors == [], "a script failed or the page asked the network for something"
+
+
+def wait_until_drawn(frame):
+    frame.wait_for_selector("body[data-ready=yes]", timeout=60_000)
+    frame.wait_for_timeout(1500)
+
+
+def test_page_of_the_command_line_shows_five_buildings_with_roofs_and_the_route(page, tmp_path, picture_of):
+    out = tmp_path / "route.html"
+    subprocess.run([sys.executable, "-m", "uavlab", "--out", out], check=True, cwd=tmp_path)
+    page.goto(out.as_uri())
+    frame = page.wait_for_selector("iframe")
+    wait_until_drawn(frame.content_frame())
+    picture = picture_of(frame)
+    for building in table1_city().buildings:
+        assert share_of_hue(picture, building.color) > 0.005, building.name
+    assert shades_of_hue(picture, table1_city().buildings[1].color) >= 3  # two walls and a roof, each in its own light
+    assert share_of_hue(picture, plot.route_colors(1)[0], saturation=0.8) > 0.001
+    assert page.locator("table").inner_text().count("\n") >= 5
+    assert page.evaluate("document.images[0].naturalWidth") > 300  # the profile
+
+
+def test_uav_flies(page, tmp_path):
+    city = table1_city(cell=4.0)
+    route = astar(city, (90, 18, 30), (20, 75, 75))
+    path = tmp_path / "scene.html"
+    path.write_text(scene.page(city, route), encoding="utf-8")
+    page.goto(path.as_uri())
+    wait_until_drawn(page)
+    first = page.screenshot()
+    page.wait_for_timeout(1500)
+    assert page.screenshot() != first
+
+
+def test_expansion_appears_in_its_order(page, tmp_path, picture_of):
+    city = table1_city(cell=2.0)
+    route = astar(city, (90, 18, 30), (50, 44, 30), record=True)
+    path = tmp_path / "scene.html"
+    path.write_text(scene.page(city, route, expansion=True), encoding="utf-8")
+    page.goto(path.as_uri())
+    wait_until_drawn(page)
+    shown = """() => { let names = [];
+        viewer.scene.traverseVisible(o => { if (o.isPoints) names.push(Number(o.parent.name.slice(5))) });
+        return names.sort((a, b) => a - b); }"""
+    counts = []
+    while not counts or counts[-1] < scene.EXPANSION_BATCHES:
+        batches = page.evaluate(shown)
+        assert batches == list(range(len(batches)))  # never a later one without all before it
+        counts.append(len(batches))
+        assert len(counts) < 300
+        page.wait_for_timeout(200)
+    assert counts[0] < counts[-1]
+    assert share_of_hue(picture_of(page), plot.sequential_color(0.0), saturation=0.5) > 0.001
+
+
+def test_city_without_buildings_is_drawn_from_its_voxels(page, tmp_path, picture_of):
+    path = tmp_path / "scene.html"
+    path.write_text(scene.page(City(table1_city(cell=2.0).occupied, cell=2.0)), encoding="utf-8")
+    page.goto(path.as_uri())
+    wait_until_drawn(page)
+    assert share_of_hue(picture_of(page), "lightsteelblue") > 0.05

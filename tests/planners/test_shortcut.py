@@ -1,0 +1,243 @@
+"""Shortcuts against dense sampling, numeric integrals, and all subsets of the waypoints."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from uavlab.city import City
+from uavlab.planners import astar, penalty_zone, shortcut
+from uavlab.route import Route
+
+OPEN = City(np.zeros((20, 20, 20), bool))
+
+
+def random_case(seed, *, side=(6, 16), densest=0.15):
+    """A random map, a route that A* found in it, and the price that it was found with."""
+    rng = np.random.default_rng(seed)
+    shape = rng.integers(*side, 3)
+    occupied = rng.random(shape) < rng.uniform(0, densest)
+    occupied[0, 0, 0] = occupied[-1, -1, -1] = False
+    city = City(occupied, cell=rng.uniform(0.5, 3), origin=rng.uniform(-50, 50, 3))
+    price = 10 ** rng.uniform(-0.5, 0.5, shape)
+    start, goal = city.center_of([(0, 0, 0), np.array(shape) - 1])
+    return city, price, astar(city, start, goal), astar(city, start, goal, price=price)
+
+
+def touches_obstacle(city, start, end, step=0.01):
+    """Whether a leg has a point in common with an occupied voxel, faces, edges and corners included.
+
+    Looks every `step` cells, and where the leg crosses a plane between voxels.
+    """
+    start, end = ((np.asarray(point) - city.origin) / city.cell for point in (start, end))
+    shares = [np.linspace(0, 1, int(np.linalg.norm(end - start) / step) + 2)]
+    for a, b in zip(start, end, strict=True):
+        if abs(b - a) > 1e-9:
+            planes = np.arange(np.ceil(min(a, b)), np.floor(max(a, b)) + 1)
+            shares.append((planes - a) / (b - a))
+    points = start + np.outer(np.concatenate(shares), end - start)
+    for shift in itertools.product((-1e-7, 1e-7), repeat=3):
+        index = np.floor(points + shift).astype(int)
+        inside = ((index >= 0) & (index < city.shape)).all(axis=1)
+        if city.occupied[tuple(index[inside].T)].any():
+            return True
+    return False
+
+
+def integral(city, price, points, step=0.002):
+    """∫ price ds along a polyline, by the midpoint rule."""
+    total = 0.0
+    for start, end in itertools.pairwise(points):
+        parts = int(np.ceil(np.linalg.norm(end - start) / step))
+        middle = start + np.outer((np.arange(parts) + 0.5) / parts, end - start)
+        total += price[tuple(city.cell_of(middle).T)].mean() * np.linalg.norm(end - start)
+    return total
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_shortcut_is_free_never_longer_and_keeps_the_ends(seed):
+    city, _, route, _ = random_case(seed)
+    short = shortcut(route, city)
+    assert route.reached
+    assert np.array_equal(short.points[[0, -1]], route.points[[0, -1]])
+    assert short.cost == pytest.approx(short.length)
+    assert short.length <= route.length + 1e-9
+    assert short.planner == "A* + shortcut"
+    for start, end in itertools.pairwise(short.points):
+        assert not touches_obstacle(city, start, end)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_waypoints_are_some_of_the_route_s_in_order(seed):
+    city, _, route, _ = random_case(seed)
+    position = 0
+    for waypoint in shortcut(route, city).points:
+        position += int(np.flatnonzero((route.points[position:] == waypoint).all(axis=1))[0])
+    assert position == len(route.points) - 1
+
+
+def test_shortcuts_shorten_in_table_1_and_stay_free(table1):
+    rng = np.random.default_rng(2)
+    free = np.argwhere(~table1.occupied)
+    saved = []
+    for start, goal in table1.center_of(rng.choice(free, (15, 2), axis=0)):
+        route = astar(table1, start, goal)
+        short = shortcut(route, table1)
+        assert not any(touches_obstacle(table1, *leg, step=0.01) for leg in itertools.pairwise(short.points))
+        saved.append(1 - short.length / route.length)
+    assert min(saved) >= 0
+    assert np.mean(saved) > 0.02
+
+
+@pytest.mark.parametrize("goal", [(19.5, 0.5, 0.5), (19.5, 7.5, 0.5), (3.5, 17.5, 11.5), (19.5, 19.5, 19.5)])
+def test_on_an_empty_map_it_is_a_straight_line(goal):
+    start = (0.5, 0.5, 0.5)
+    route = astar(OPEN, start, goal)
+    for price in (None, np.full(OPEN.shape, 2.0)):
+        short = shortcut(route, OPEN, price=price)
+        assert short.points.tolist() == [list(start), list(goal)]
+        factor = 1.0 if price is None else 2.0
+        assert short.cost == pytest.approx(factor * np.linalg.norm(np.subtract(goal, start)))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_cost_of_a_grid_route_is_the_exact_integral_of_its_price(seed):
+    """Half of each move lies in one voxel, half in the other: the edge cost d·(p + p')/2 is the line integral."""
+    city, price, _, route = random_case(seed)
+    index, length = city.voxels_along(route.points)
+    assert (length * price[tuple(index.T)]).sum() == pytest.approx(route.cost, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(15))
+def test_with_a_price_the_cost_is_the_integral_and_not_above_the_route_s(seed):
+    city, price, _, route = random_case(seed)
+    short = shortcut(route, city, price=price)
+    assert short.cost == pytest.approx(integral(city, price, short.points), rel=2e-3)
+    assert short.cost <= route.cost * (1 + 1e-9)
+    assert not any(touches_obstacle(city, *leg) for leg in itertools.pairwise(short.points))
+
+
+def test_a_dear_zone_is_not_cut_through():
+    price = np.ones(OPEN.shape)
+    price[5:15, :15] = 50.0
+    route = astar(OPEN, (0.5, 0.5, 0.5), (19.5, 0.5, 0.5), price=price)
+    short = shortcut(route, OPEN, price=price)
+    assert short.length > 30
+    assert short.cost == pytest.approx(short.length)  # it stays where a metre costs 1
+    assert shortcut(route, OPEN).length == 19  # without the price, it is a straight line
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_no_subset_of_the_waypoints_is_cheaper(seed):
+    city, price, plain, priced = random_case(seed, side=(4, 8), densest=0.3)
+    for route, prices in ((plain, None), (priced, price)):
+        if not route.reached:
+            continue
+        points = route.points[:9]
+        whole = Route(points)
+        cost = np.full((len(points), len(points)), np.inf)
+        for i, j in itertools.combinations(range(len(points)), 2):
+            if not touches_obstacle(city, points[i], points[j], step=0.02):
+                index, length = city.voxels_along(points[[i, j]])
+                cost[i, j] = length @ (np.ones(len(index)) if prices is None else prices[tuple(index.T)])
+        inner = range(1, len(points) - 1)
+        ways = (
+            (0, *kept, len(points) - 1)
+            for count in range(len(inner) + 1)
+            for kept in itertools.combinations(inner, count)
+        )
+        least = min(sum(cost[i, j] for i, j in itertools.pairwise(way)) for way in ways)
+        assert shortcut(whole, city, price=prices).cost == pytest.approx(least, rel=1e-7)
+
+
+@pytest.mark.parametrize("min_clearance", [1.5, 3.5])
+def test_clearance_is_kept_by_all_voxels_that_are_passed(table1, min_clearance):
+    for start, goal in [((90, 20, 30), (50, 44, 30)), ((5, 5, 5), (95, 95, 50)), ((5, 50, 20), (60, 80, 80))]:
+        route = astar(table1, start, goal, min_clearance=min_clearance)
+        short = shortcut(route, table1, min_clearance=min_clearance)
+        assert short.length < route.length
+        assert short.clearance(table1) >= min_clearance - 1e-9
+
+
+def test_a_penalty_zone_is_kept_in_mind(table1):
+    price = penalty_zone(table1, 3.5, penalty=2.0)
+    route = astar(table1, (90, 20, 30), (50, 44, 30), price=price)
+    short = shortcut(route, table1, price=price)
+    assert short.cost <= route.cost + 1e-9
+    assert short.cost < integral(table1, price, shortcut(route, table1).points, step=0.01) - 0.1
+
+
+def walled(*voxels, shape=(3, 6, 1)):
+    occupied = np.zeros(shape, bool)
+    for voxel in voxels:
+        occupied[voxel] = True
+    return City(occupied)
+
+
+def test_a_line_may_not_touch_the_corner_of_an_obstacle():
+    city = walled((1, 0, 0), shape=(3, 3, 1))
+    route = Route([(0.5, 0.5, 0.5), (0.5, 1.5, 0.5), (1.5, 1.5, 0.5)])
+    assert np.array_equal(shortcut(route, city).points, route.points)
+
+
+@pytest.mark.parametrize("step", [10.0, 0.8, 0.4])
+def test_a_route_that_cuts_a_corner_is_refused_also_when_resampled(step):
+    city = walled((1, 0, 0), shape=(3, 3, 1))
+    with pytest.raises(ValueError, match="route passes through a blocked voxel"):
+        shortcut(Route([(0.5, 0.5, 0.5), (1.5, 1.5, 0.5)]).resample(step), city)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_line_along_the_face_of_an_obstacle_is_blocked_on_either_side(mirrored):
+    city = walled((0, 2, 0), shape=(2, 6, 1))
+    points = np.array([(0.5, 0.5, 0.5), (1.5, 1.5, 0.5), (1.5, 2.5, 0.5), (1.5, 3.5, 0.5), (0.5, 4.5, 0.5)])
+    if mirrored:
+        city = City(city.occupied[::-1])
+        points[:, 0] = 2 - points[:, 0]
+    short = shortcut(Route(points).resample(0.8), city)
+    assert not any(touches_obstacle(city, *leg) for leg in itertools.pairwise(short.points))
+
+
+@pytest.mark.parametrize(
+    ("route", "city", "options", "message"),
+    [
+        (
+            Route([(0.5, 0.5, 0.5), (0.5, 1.5, 0.5), (0.5, 4.5, 0.5)]),
+            walled((0, 3, 0)),
+            {},
+            r"route passes through a blocked voxel between waypoints 1 \(0.5, 1.5, 0.5\) and 2 \(0.5, 4.5, 0.5\)",
+        ),
+        (Route([(0.5, 0.5, 0.5), (0.5, 9.5, 0.5)]), walled(), {}, "between waypoints 0 .* and 1"),
+        (
+            Route([(0.5, 0.5, 0.5), (0.5, 5.5, 0.5)]),
+            walled((2, 2, 0)),
+            {"min_clearance": 2.0},
+            "shorten only routes that keep min_clearance=2 m themselves",
+        ),
+        (Route(np.ones((2, 3))), OPEN, {"min_clearance": -1.0}, "min_clearance must be .* at least 0, got -1"),
+        (Route(np.ones((2, 3))), OPEN, {"price": np.ones(3)}, "price must have the city's shape"),
+        (Route(np.ones((2, 3))), OPEN, {"price": np.full(OPEN.shape, np.nan)}, "price must be finite"),
+    ],
+)
+def test_bad_questions_are_refused_with_the_reason(route, city, options, message):
+    with pytest.raises(ValueError, match=message):
+        shortcut(route, city, **options)
+
+
+def test_what_did_not_arrive_or_has_no_legs_comes_back_as_it_is():
+    stuck = Route(np.empty((0, 3)), "A*", reached=False, reason="no free way", cost=np.inf)
+    assert shortcut(stuck, OPEN) is stuck
+    halfway = Route([(0.5, 0.5, 0.5), (1.5, 0.5, 0.5)], "APF", reached=False, reason="stuck")
+    assert shortcut(halfway, OPEN) is halfway
+    point = Route([(0.5, 0.5, 0.5)])
+    assert shortcut(point, OPEN) is point
+
+
+def test_a_longer_way_between_the_same_two_points_is_straightened():
+    loop = Route([(0.5, 0.5, 0.5), (5.5, 0.5, 0.5), (5.5, 5.5, 0.5), (0.5, 5.5, 0.5), (0.5, 1.5, 0.5)])
+    assert shortcut(loop, OPEN).points.tolist() == [[0.5, 0.5, 0.5], [0.5, 1.5, 0.5]]
+
+
+def test_what_the_planner_noted_stays():
+    route = astar(OPEN, (0.5, 0.5, 0.5), (9.5, 5.5, 2.5), record=True)
+    assert shortcut(route, OPEN).info is route.info

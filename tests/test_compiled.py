@@ -1,0 +1,102 @@
+"""The cache of compiled code: dropped when it is old, done without where nothing can be written."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import uavlab
+from uavlab.compiled import discard_stale
+
+PACKAGE = Path(uavlab.__file__).parent
+
+SMALL_SEARCH = """
+import json, warnings
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    import numpy as np
+    import uavlab
+    from uavlab.city import City
+    from uavlab.planners import astar, shortcut
+    occupied = np.zeros((5, 5, 1), bool)
+    occupied[2, :4] = True
+    city = City(occupied)
+    route = astar(city, (0.5, 0.5, 0.5), (4.5, 0.5, 0.5))
+    short = shortcut(route, city)
+print(json.dumps({
+    "package": uavlab.__file__,
+    "cost": route.cost,
+    "short": short.points.tolist(),
+    "warnings": [[w.category.__name__, str(w.message)] for w in caught],
+}))
+"""
+
+
+def run(folder, script, **environment):
+    """Run a script with the package that lies in a folder; what it printed."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        cwd=folder,
+        env={**kept, "PYTHONPATH": str(folder), **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture
+def read_only_package(tmp_path):
+    """A copy of the package beside which no cache folder can be made, not even by root: files stand in their places."""
+    copy = tmp_path / "uavlab"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in [copy, *(path for path in copy.rglob("*") if path.is_dir())]:
+        (folder / "__pycache__").write_text("not a folder")
+    return tmp_path
+
+
+def test_without_a_cache_folder_everything_works_after_one_warning(read_only_package):
+    nowhere = os.devnull + "/nowhere"
+    homes = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "LOCALAPPDATA", "USERPROFILE"), nowhere)
+    result = json.loads(run(read_only_package, SMALL_SEARCH, **homes))
+    assert Path(result["package"]).is_relative_to(read_only_package)
+    assert result["cost"] == pytest.approx(8 + 2 * 2**0.5)  # around the end of the wall
+    assert result["short"] == [[0.5, 0.5, 0.5], [1.5, 4.5, 0.5], [3.5, 4.5, 0.5], [4.5, 0.5, 0.5]]
+    about_cache = [[category, text] for category, text in result["warnings"] if "numba" in text.lower()]
+    assert [category for category, _ in about_cache] == ["RuntimeWarning"]
+    assert "set NUMBA_CACHE_DIR to a folder you may write" in about_cache[0][1]
+
+
+def test_an_edit_in_another_file_is_not_hidden_by_the_cache(tmp_path):
+    package = tmp_path / "uavlab"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    shutil.copy(PACKAGE / "compiled.py", package)
+    header = "from uavlab.compiled import compiled\n"
+    inner = header + "@compiled\ndef inner(): return {}\n"
+    outer = header + "from uavlab.inner import inner\n@compiled\ndef outer(): return inner() + 1\n"
+    call = "from uavlab.outer import outer; print(outer())"
+    (package / "outer.py").write_text(outer)
+    (package / "inner.py").write_text(inner.format(1))
+    assert run(tmp_path, call) == "2\n"
+    assert list(package.glob("__pycache__/outer*.nbi"))
+    (package / "inner.py").write_text(inner.format(41))
+    an_hour_ago = (package / "inner.py").stat().st_mtime - 3600
+    for index in package.glob("__pycache__/*.nbi"):
+        os.utime(index, (an_hour_ago, an_hour_ago))
+    assert run(tmp_path, call) == "42\n"
+
+
+def test_compiled_code_older_than_the_newest_source_is_dropped(tmp_path):
+    newest = max(source.stat().st_mtime for source in PACKAGE.rglob("*.py"))
+    for name, age in {"old.nbi": 10, "old.nbc": 10, "just_as_new.nbi": 0, "new.nbi": -10}.items():
+        (tmp_path / name).touch()
+        os.utime(tmp_path / name, (newest - age, newest - age))
+    discard_stale(tmp_path)
+    assert {file.name for file in tmp_path.iterdir()} == {"old.nbc", "just_as_new.nbi", "new.nbi"}

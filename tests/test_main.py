@@ -1,0 +1,86 @@
+"""`python -m uavlab`, as a person calls it."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from uavlab.__main__ import main
+
+
+def test_writes_one_page_and_says_where(tmp_path, capsys):
+    out = tmp_path / "route.html"
+    assert main(["--out", str(out)]) == 0
+    assert f"open {out}" in capsys.readouterr().out
+    page = out.read_text(encoding="utf-8")
+    assert "A* + shortcut through Table 1" in page
+    assert "srcdoc=" in page
+    assert "data:image/svg+xml;base64," in page
+    assert "<th>least clearance</th><td>3.50 m</td>" in page
+    assert len(page) < 600_000
+
+
+def test_planner_start_and_goal_are_taken(tmp_path, capsys):
+    out = tmp_path / "route.html"
+    arguments = ["--planner", "astar", "--start", "5,5,10", "--goal", "5,5,50", "--clearance", "0", "--out", str(out)]
+    assert main(arguments) == 0
+    assert capsys.readouterr().out.startswith("A*: 40.0 m\n")
+    assert "A* through Table 1" in out.read_text(encoding="utf-8")
+
+
+def test_plans_through_a_city_file(tmp_path, capsys):
+    square = [[[0, 0], [30, 0], [30, 30], [0, 30], [0, 0]]]
+    feature = {
+        "type": "Feature",
+        "properties": {"height": 20},
+        "geometry": {"type": "Polygon", "coordinates": square},
+    }
+    file = tmp_path / "town.geojson"
+    crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::28992"}}
+    file.write_text(json.dumps({"type": "FeatureCollection", "crs": crs, "features": [feature]}))
+    out = tmp_path / "route.html"
+    assert main(["--city", str(file), "--out", str(out)]) == 0
+    assert "1 buildings" in out.read_text(encoding="utf-8")
+
+
+def test_no_way_is_an_answer_with_its_own_exit_code(tmp_path, capsys):
+    voxels = tmp_path / "wall.3dmap"
+    lines = [f"5 {y} {z}" for y in range(10) for z in range(10)]
+    voxels.write_text("voxel 10 10 10\n" + "\n".join(lines) + "\n")
+    out = tmp_path / "route.html"
+    code = main(["--city", str(voxels), "--cell", "1", "--clearance", "0", "--out", str(out)])
+    assert code == 1
+    assert "not reached: no free way from" in capsys.readouterr().out
+    assert "no free way" in out.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--out", "no/such/folder/page.html"], "can't write no/such/folder/page.html: No such file or directory"),
+        (["--city", "nowhere"], "--city nowhere: neither a known name (table1) nor a file"),
+        (["--start", "65,20,30"], "start (65.0, 20.0, 30.0) lies in building '1 notch'"),
+        (["--cell", "-1"], "cell must be the edge of a voxel in metres, above 0, got -1.0"),
+        (["--clearance", "60"], "min_clearance asks for 60 m"),
+    ],
+)
+def test_wrong_question_is_one_line_and_exit_code_2(arguments, message, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_position_that_is_none(capsys):
+    with pytest.raises(SystemExit, match="2"):
+        main(["--start", "1,2"])
+    assert "'1,2' is not a position: give three numbers in metres, as in 90,20,30" in capsys.readouterr().err
+
+
+def test_help_names_every_option():
+    text = subprocess.run([sys.executable, "-m", "uavlab", "--help"], capture_output=True, text=True, check=True).stdout
+    for option in ("--city", "--planner", "--start", "--goal", "--out", "--clearance", "--cell"):
+        assert option in text
