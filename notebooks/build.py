@@ -135,6 +135,7 @@ def kept(output: NotebookNode) -> NotebookNode | None:
 def exercise(source: Path) -> NotebookNode:
     """A solutions notebook with the answers taken out and nothing run."""
     notebook = stripped(jupytext.read(source))
+    notebook.metadata["jupytext"] = {"formats": "ipynb"}  # a student who saves it makes no source of it
     notebook.cells = [cell for cell in notebook.cells if "solution" not in tags(cell)]
     for cell in notebook.cells:
         if cell.cell_type == "code":

@@ -156,6 +156,13 @@ def test_what_sticks_out_of_the_map_is_cut_off():
     assert not City.from_buildings([BOX], origin=(50, 50, 50), size=(5, 5, 5)).occupied.any()
 
 
+def test_a_voxel_whose_centre_lies_on_a_face_is_occupied():
+    building = Building.prism([(1.5, 2.5), (3.5, 2.5), (3.5, 4.5), (1.5, 4.5)], 3.5, bottom=0.5)
+    occupied = City.from_buildings([building], origin=(0, 0, 0), size=(8, 8, 8)).occupied
+    assert occupied.sum() == 3 * 3 * 4
+    assert occupied[1:4, 2:5, 0:4].all()
+
+
 def test_a_name_is_given_to_what_stands_at_a_point(table1):
     assert table1.building_at((65, 20, 30)) == "building '1 notch'"
     assert City(table1.occupied).building_at((65, 20, 30)) == "an obstacle"

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from uavlab.city.buildings import Building
+from uavlab.city.buildings import FACE_TOLERANCE, Building
 from uavlab.city.voxels import squared_clearance, voxels_on_segment
 
 MOST_VOXELS = 500_000_000
@@ -252,8 +252,11 @@ def checked_origin(origin: npt.ArrayLike) -> np.ndarray:
 
 def rasterise(building: Building, occupied: np.ndarray, cell: float, origin: np.ndarray) -> None:
     """Mark the voxels whose centres lie in the building, in place; what sticks out of the map is cut off."""
-    low = np.clip(np.floor((building.bounds[0] - origin) / cell - 0.5).astype(int), 0, occupied.shape)
-    high = np.clip(np.ceil((building.bounds[1] - origin) / cell + 0.5).astype(int), 0, occupied.shape)
-    axes = [origin[a] + cell * (np.arange(low[a], high[a]) + 0.5) for a in range(3)]
-    centers = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    occupied[tuple(slice(a, b) for a, b in zip(low, high, strict=True))] |= building.contains(centers)
+    for hull in building.hulls:
+        low = np.clip(np.floor((hull.min_bound - origin) / cell - 0.5).astype(int), 0, occupied.shape)
+        high = np.clip(np.ceil((hull.max_bound - origin) / cell + 0.5).astype(int), 0, occupied.shape)
+        x, y, z = np.ix_(*(origin[a] + cell * (np.arange(low[a], high[a]) + 0.5) for a in range(3)))
+        inside = np.ones(high - low, dtype=bool)
+        for a, b, c, d in hull.equations:  # one face after the other, as in Building.contains, for memory's sake
+            inside &= a * x + b * y + c * z + d <= FACE_TOLERANCE
+        occupied[low[0] : high[0], low[1] : high[1], low[2] : high[2]] |= inside
