@@ -10,7 +10,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from conftest import share_of_hue
+from pictures import share_of_hue
 
 from uavlab.city import table1_city
 

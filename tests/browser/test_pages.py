@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import shades_of_hue, share_of_hue
+from pictures import shades_of_hue, share_of_hue
 
 from uavlab import plot, scene
 from uavlab.city import City, table1_city
