@@ -156,6 +156,17 @@ def test_what_sticks_out_of_the_map_is_cut_off():
     assert not City.from_buildings([BOX], origin=(50, 50, 50), size=(5, 5, 5)).occupied.any()
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_occupied_is_where_a_building_contains_the_centre(seed):
+    rng = np.random.default_rng(seed)
+    buildings = [Building.hull(rng.uniform(-4, 14, 3) + rng.uniform(-4, 4, (8, 3))) for _ in range(4)]
+    outline = np.array([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
+    ell = Building.prism(outline + rng.uniform(0, 5, 2), 8.5)
+    city = City.from_buildings([*buildings, ell], cell=0.7, origin=(-1, 0, 1), size=(12, 11, 10))
+    centers = city.center_of(np.moveaxis(np.indices(city.shape), 0, -1))
+    assert np.array_equal(city.occupied, np.any([b.contains(centers) for b in city.buildings], axis=0))
+
+
 def test_a_voxel_whose_centre_lies_on_a_face_is_occupied():
     building = Building.prism([(1.5, 2.5), (3.5, 2.5), (3.5, 4.5), (1.5, 4.5)], 3.5, bottom=0.5)
     occupied = City.from_buildings([building], origin=(0, 0, 0), size=(8, 8, 8)).occupied

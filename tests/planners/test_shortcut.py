@@ -212,7 +212,7 @@ def test_a_line_along_the_face_of_an_obstacle_is_blocked_on_either_side(mirrored
             Route([(0.5, 0.5, 0.5), (0.5, 5.5, 0.5)]),
             walled((2, 2, 0)),
             {"min_clearance": 2.0},
-            "shorten only routes that keep min_clearance=2 m themselves",
+            "shorten only routes that themselves keep min_clearance=2 m",
         ),
         (Route(np.ones((2, 3))), OPEN, {"min_clearance": -1.0}, "min_clearance must be .* at least 0, got -1"),
         (Route(np.ones((2, 3))), OPEN, {"price": np.ones(3)}, "price must have the city's shape"),

@@ -5,6 +5,7 @@ high the first route found is a cheapest one. REPARE (Eqs 11-13) adds a penalty 
 metre on the edges, which keeps A* exact and the cost of a route the same in both directions.
 """
 
+import math
 import time
 
 import numpy as np
@@ -62,7 +63,8 @@ def astar(
         Distance to obstacle surfaces that no node of the route may fall below [m], for example D_min (Eq. 7).
     as_printed : bool
         Order the open list by Eq. 13: T = g·price + h. The factor multiplies the whole way so far and no
-        successor inherits it, so it is no cost of a route: the result depends on the direction of travel.
+        successor inherits it, so it is no cost of a route: the result depends on the direction of travel, and
+        `Route.cost` is the length.
     record : bool
         Keep the order of expansion in `info["order"]`.
 
@@ -87,8 +89,7 @@ def astar(
     blocked = blocked_voxels(city, min_clearance)
     cheapest = 1.0 if prices is None or as_printed else float(prices.min())
     g, parent = np.empty(city.occupied.size), np.zeros(city.occupied.size, np.uint8)
-    order = np.empty(city.occupied.size if record else 0, np.int32)
-    expanded = search(
+    expanded, order = search(
         blocked,
         prices,
         as_printed,
@@ -99,13 +100,14 @@ def astar(
         g,
         parent,
         open_list(city.occupied.size),
-        order,
+        record,
     )
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
     if record:
-        info["order"] = order[:expanded].copy()
+        info["order"] = order[:expanded]
     if parent[target] == UNSEEN:
-        reason = f"no free way from {show(start)} to {show(goal)}: all {expanded} voxels within reach were searched"
+        reach = np.count_nonzero(parent)
+        reason = f"no free way from {show(start)} to {show(goal)}: all {reach} voxels within reach were searched"
         return Route(np.empty((0, 3)), "A*", reached=False, reason=reason, cost=np.inf, info=info)
     nodes = trace(parent, source, target, city.shape)
     cost = float(g[target]) * city.cell
@@ -124,7 +126,8 @@ def penalty_zone(city: City, safe_distance: float, *, penalty: float, shape: str
         ω, at least 0; typically 0.1 to 2.
     shape : {"ball", "ring"}
         "ball" measures the distance to the nearest surface. "ring" looks, as the paper does, only at the 26 points
-        of the outer ring, r = D_min − half a cell away along each axis; for r ≥ 5 cells it can miss an obstacle.
+        of the outer ring, r cells away along each axis; r is the least with r + ½ cells ≥ D_min. Thin obstacles can
+        stand between its points.
 
     Returns
     -------
@@ -143,7 +146,7 @@ def penalty_zone(city: City, safe_distance: float, *, penalty: float, shape: str
     if shape == "ball":
         near = city.clearance < safe_distance - 1e-9 * city.cell
     elif shape == "ring":
-        near = ring_meets_obstacle(city.occupied, max(1, round(safe_distance / city.cell - 0.5)))
+        near = ring_meets_obstacle(city.occupied, max(1, math.ceil(safe_distance / city.cell - 0.5 - 1e-9)))
     else:
         raise ValueError(f"shape must be 'ball' or 'ring', got {shape!r}")
     return 1.0 + penalty * near
@@ -165,12 +168,16 @@ UNSEEN, START = 0, 27  # values of `parent`; 1 to 26: the move that led to the n
 
 
 @compiled
-def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent, waiting, order):
-    """Expand nodes in order of g + h until the goal is the first; `parent` then holds the tree. Count expansions."""
+def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent, waiting, record):
+    """Expand nodes in order of g + h until the goal is the first; `parent` then holds the tree.
+
+    Returns how many nodes were expanded and, with `record`, which, in order; a node may be expanded again (Eq. 13).
+    """
     ny, nz = blocked.shape[1], blocked.shape[2]
     goal_i, goal_j, goal_k = goal // (ny * nz), goal // nz % ny, goal % nz
     prices = price.ravel() if price is not None else None
     expanded = 0
+    order = np.empty(1024 if record else 0, np.int32)
     g[start] = 0.0
     parent[start] = START
     push(waiting, start, 0.0)
@@ -178,7 +185,9 @@ def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent
         node = pop(waiting)
         if node == goal:
             break
-        if expanded < order.size:
+        if record:
+            if expanded == order.size:
+                order = np.concatenate((order, np.empty_like(order)))
             order[expanded] = node
         expanded += 1
         i, j, k = node // (ny * nz), node // nz % ny, node % nz
@@ -198,7 +207,7 @@ def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent
                 left = weight * distance_left(heuristic, goal_i - i - di, goal_j - j - dj, goal_k - k - dk)
                 factor = prices[neighbour] if prices is not None and as_printed else 1.0
                 push(waiting, neighbour, cost * factor + left)
-    return expanded
+    return expanded, order
 
 
 def trace(parent: np.ndarray, source: int, target: int, shape: tuple[int, int, int]) -> np.ndarray:

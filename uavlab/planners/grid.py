@@ -110,12 +110,21 @@ def node_at(city: City, point: npt.ArrayLike, argument: str, min_clearance: floa
 
 
 def nearest_allowed(city: City, position: np.ndarray, min_clearance: float) -> str:
-    """Words for the centre nearest to a position where the UAV may be."""
-    free = np.argwhere(~blocked_voxels(city, min_clearance))
-    if len(free) == 0:
-        return "no voxel of the map is free"
-    centers = city.center_of(free)
-    return f"the nearest free point is {show(centers[np.argmin(((centers - position) ** 2).sum(axis=1))])}"
+    """Words for the centre nearest to a position where the UAV may be, looked for in boxes that grow."""
+    allowed = ~blocked_voxels(city, min_clearance)
+    index = city.cell_of(position)
+    radius = 4
+    while True:
+        low, high = np.maximum(index - radius, 0), np.minimum(index + radius + 1, city.shape)
+        free = low + np.argwhere(allowed[low[0] : high[0], low[1] : high[1], low[2] : high[2]])
+        centers = city.center_of(free)
+        away = np.linalg.norm(centers - position, axis=1)
+        whole_map = (high - low == city.shape).all()
+        if away.min(initial=np.inf) < (np.inf if whole_map else radius * city.cell):
+            return f"the nearest free point is {show(centers[away.argmin()])}"
+        if whole_map:
+            return "no voxel of the map is free"
+        radius *= 2
 
 
 def endpoints(city: City, start: npt.ArrayLike, goal: npt.ArrayLike, min_clearance: float = 0.0) -> tuple[int, int]:

@@ -17,6 +17,9 @@ from uavlab.compiled import compiled
 from uavlab.planners.grid import blocked_voxels, checked_price, show
 from uavlab.route import Route
 
+ROUNDING = 1e-9
+"""What is nearer than this [cells] touches; costs that differ by less are the same."""
+
 
 def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, min_clearance: float = 0.0) -> Route:
     """The cheapest route over a subset of the waypoints.
@@ -76,9 +79,9 @@ def cheapest_subset(points, blocked, price):
     for j in range(1, len(points)):
         for i in range(j):
             at_least = least_price * distance(points[i], points[j])
-            if best[i] + at_least < best[j] - 1e-9:
+            if best[i] + at_least < best[j] - ROUNDING:
                 cost = best[i] + line_cost(blocked, price, points[i], points[j])
-                if cost < best[j] - 1e-9:
+                if cost < best[j] - ROUNDING:
                     best[j] = cost
                     before[j] = i
         if best[j] == np.inf:
@@ -89,31 +92,41 @@ def cheapest_subset(points, blocked, price):
 @compiled
 def line_cost(blocked, price, start, end):
     """Integral of the price along a straight line [cells], its length without one; infinite if it is blocked."""
+    if touches_blocked(blocked, start, end, 0.0):
+        return np.inf
     voxels, leave = voxels_on_segment(start, end)
     length = distance(start, end)
     cost = 0.0
     entered = 0.0
     for m in range(len(voxels)):
-        if box_blocked(blocked, voxels[max(m - 1, 0)], voxels[m]):
+        i, j, k = voxels[m]
+        if not (0 <= i < blocked.shape[0] and 0 <= j < blocked.shape[1] and 0 <= k < blocked.shape[2]):
+            return np.inf
+        if touches_blocked(blocked, start, end, (entered + leave[m]) / 2) or touches_blocked(
+            blocked, start, end, leave[m]
+        ):
             return np.inf
         if price is not None:
-            cost += (leave[m] - entered) * length * price[voxels[m, 0], voxels[m, 1], voxels[m, 2]]
-            entered = leave[m]
+            cost += (leave[m] - entered) * length * price[i, j, k]
+        entered = leave[m]
     return cost if price is not None else length
+
+
+@compiled
+def touches_blocked(blocked, start, end, share):
+    """Whether the point at a share of a line lies in a blocked voxel or on its surface, edge or corner."""
+    x = start[0] + share * (end[0] - start[0])
+    y = start[1] + share * (end[1] - start[1])
+    z = start[2] + share * (end[2] - start[2])
+    nx, ny, nz = blocked.shape
+    for i in range(max(math.floor(x - ROUNDING), 0), min(math.floor(x + ROUNDING), nx - 1) + 1):
+        for j in range(max(math.floor(y - ROUNDING), 0), min(math.floor(y + ROUNDING), ny - 1) + 1):
+            for k in range(max(math.floor(z - ROUNDING), 0), min(math.floor(z + ROUNDING), nz - 1) + 1):
+                if blocked[i, j, k]:
+                    return True
+    return False
 
 
 @compiled
 def distance(start, end):
     return math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2 + (end[2] - start[2]) ** 2)
-
-
-@compiled
-def box_blocked(blocked, one, other):
-    """Whether a voxel of the bounding box of two voxels is blocked or outside."""
-    for i in range(min(one[0], other[0]), max(one[0], other[0]) + 1):
-        for j in range(min(one[1], other[1]), max(one[1], other[1]) + 1):
-            for k in range(min(one[2], other[2]), max(one[2], other[2]) + 1):
-                inside = 0 <= i < blocked.shape[0] and 0 <= j < blocked.shape[1] and 0 <= k < blocked.shape[2]
-                if not inside or blocked[i, j, k]:
-                    return True
-    return False

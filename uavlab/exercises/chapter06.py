@@ -1,0 +1,209 @@
+"""Exercises of chapter 6, A*: the octile distance, legal moves, and a broken search to repair.
+
+A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
+by how they are written.
+"""
+
+import itertools
+import math
+from collections.abc import Callable, Hashable, Mapping
+
+import numpy as np
+
+Move = tuple[int, int, int]
+Graph = Mapping[Hashable, Mapping[Hashable, float]]
+
+MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if any(move)]  # type: ignore[misc]
+
+
+def exercise_1(octile: Callable[[int, int, int], float]) -> str:
+    """06.1: the shortest way over 26 moves on an empty map, from the differences of the coordinates."""
+    sorted_ahead = [(5, 3, 1), (7, 7, 2), (9, 4, 4), (6, 0, 0), (3, 3, 3), (8, 2, 0), (0, 0, 0)]
+
+    def agrees(formula: Callable[..., float], offsets: list[Move]) -> bool:
+        return all(math.isclose(octile(*o), formula(*o), rel_tol=1e-9, abs_tol=1e-9) for o in offsets)
+
+    if agrees(octile_distance, sorted_ahead):
+        shuffled = [order for offset in sorted_ahead for order in itertools.permutations(offset)]
+        if not agrees(octile_distance, shuffled):  # type: ignore[arg-type]
+            return "It is right where |dx| ≥ |dy| ≥ |dz|. The goal may lie in any direction: which of the three is largest?"
+        mirrored = [tuple(s * d for s, d in zip(sign, o, strict=True)) for sign in MOVES for o in shuffled if all(sign)]
+        if not agrees(octile_distance, mirrored):  # type: ignore[arg-type]
+            return "It is right for goals to the north-east and above. What are dx, dy, dz when the goal lies to the west?"
+        return ""
+    for formula, hint in OCTILE_MISTAKES:
+        if agrees(formula, sorted_ahead):
+            return hint
+    return f"For (5, 3, 1) you get {octile(5, 3, 1):.3f}. Write down the five moves of the shortest way, and add their lengths."
+
+
+def octile_distance(dx: int, dy: int, dz: int) -> float:
+    c, b, a = sorted((abs(dx), abs(dy), abs(dz)))
+    return math.sqrt(3) * c + math.sqrt(2) * (b - c) + (a - b)
+
+
+OCTILE_MISTAKES: list[tuple[Callable[[int, int, int], float], str]] = [
+    (
+        math.hypot,
+        "That is the straight distance. It is never too high, but (2, 1, 0) shows that no two moves are as short: "
+        "count in moves.",
+    ),
+    (
+        lambda a, b, c: a + b + c,
+        "That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.",
+    ),
+    (
+        lambda a, b, c: a,
+        "That is the number of moves. They are not equally long: how long is one through a corner?",
+    ),
+    (
+        lambda a, b, c: a + (math.sqrt(2) - 1) * b,
+        "You get the same for (5, 3, 1) as for (5, 3, 0). That is the octile distance of a plane: where is the height?",
+    ),
+    (
+        lambda a, b, c: a + math.sqrt(2) * b + math.sqrt(3) * c,
+        "Too high: a move through a corner goes forward in all three directions at once. How much of the other two "
+        "is left after c of them?",
+    ),
+    (
+        lambda a, b, c: math.sqrt(2) * c + math.sqrt(3) * (b - c) + (a - b),
+        "Almost: which move is √2 long, and which one √3?",
+    ),
+]
+
+
+def exercise_2(legal: Callable[[np.ndarray, Move, Move], bool]) -> str:
+    """06.2: whether a move is legal: every voxel of its bounding box lies in the map and is free."""
+    rng = np.random.default_rng(62)
+    maps = [rng.random((5, 5, 5)) < share for share in (0.1, 0.2, 0.3)]
+    within, beyond = [], []
+    for occupied in maps:
+        for node in map(tuple, np.argwhere(~occupied).tolist()):
+            for move in MOVES:
+                case = occupied, node, move
+                (within if is_inside(occupied, target_of(node, move)) else beyond).append(case)
+    answers = [bool(legal(*case)) for case in within]
+    if answers != [box_is_free(*case) for case in within]:
+        for rule, hint in LEGAL_MISTAKES:
+            if answers == [rule(*case) for case in within]:
+                return hint
+        wrong = next(case for case, answer in zip(within, answers, strict=True) if answer != box_is_free(*case))
+        blocked = int(sum(wrong[0][voxel] for voxel in box_of(*wrong[1:])))
+        return (
+            f"From {wrong[1]} by {wrong[2]} there are {blocked} occupied voxels in the move's bounding box of "
+            f"{len(box_of(*wrong[1:]))}, and you say {not box_is_free(*wrong)}."
+        )
+    try:
+        allowed = [case for case in beyond if legal(*case)]
+    except IndexError:
+        return "Inside of the map it is right. At its upper borders it raises IndexError: look whether the target is on the map."
+    if allowed:
+        node, move = allowed[0][1:]
+        return (
+            f"Inside of the map it is right. But you let the UAV leave it: from {node} by {move} is no voxel. "
+            "(To NumPy the index −1 is the last voxel, on the far side.)"
+        )
+    return ""
+
+
+def target_of(node: Move, move: Move) -> Move:
+    return node[0] + move[0], node[1] + move[1], node[2] + move[2]
+
+
+def is_inside(occupied: np.ndarray, voxel: Move) -> bool:
+    return all(0 <= index < size for index, size in zip(voxel, occupied.shape, strict=True))
+
+
+def box_of(node: Move, move: Move) -> list[Move]:
+    """The voxels of a move's bounding box."""
+    return [target_of(node, part) for part in itertools.product(*({0, d} for d in move))]  # type: ignore[arg-type]
+
+
+def box_is_free(occupied: np.ndarray, node: Move, move: Move) -> bool:
+    return not any(occupied[voxel] for voxel in box_of(node, move))
+
+
+def faces_are_free(occupied: np.ndarray, node: Move, move: Move) -> bool:
+    """The target and the voxels across the faces that the move leaves by, but not those across edges."""
+    faces = [target_of(node, (move[0], 0, 0)), target_of(node, (0, move[1], 0)), target_of(node, (0, 0, move[2]))]
+    return not any(occupied[voxel] for voxel in [*faces, target_of(node, move)])
+
+
+LEGAL_MISTAKES: list[tuple[Callable[[np.ndarray, Move, Move], bool], str]] = [
+    (
+        lambda occupied, node, move: not occupied[target_of(node, move)],
+        "You look at the voxel where the move ends, and nowhere else: that cuts corners. Which voxels does a diagonal move "
+        "touch on its way?",
+    ),
+    (
+        faces_are_free,
+        "Straight and diagonal moves are right. A move through a corner passes edges, too: its bounding box has eight "
+        "voxels, you look at five of them.",
+    ),
+    (
+        lambda occupied, node, move: not box_is_free(occupied, node, move),
+        "It is the wrong way round: `occupied` is True where there is an obstacle.",
+    ),
+]
+
+
+def exercise_3(search: Callable[[Graph, Hashable, Hashable, Callable[[Hashable], float]], float]) -> str:
+    """06.3: the cost of the cheapest way through a graph, by an A* that is right."""
+
+    def zero(node: Hashable) -> float:
+        return 0.0
+
+    chain: Graph = {"a": {"b": 1.0}, "b": {"c": 1.0}, "c": {}}
+    steps_left = {"a": 2.0, "b": 1.0, "c": 0.0}
+    cost = search(chain, "a", "c", steps_left.__getitem__)
+    if cost != 2:
+        return (
+            f"A single road a–b–c, 1 long twice, and an estimate that is exact: your cost is {cost}. What has been added "
+            "to g that is no road?"
+        )
+    late: Graph = {"a": {"b": 5.0, "c": 1.0}, "b": {"d": 1.0}, "c": {"b": 1.0}, "d": {}}
+    cost = search(late, "a", "d", zero)
+    if cost != 3:
+        return (
+            f"a–b is 5, a–c and c–b are 1 each, b–d is 1: your cost from a to d is {cost}. The direct way to b is found first. "
+            "What happens when a better one turns up while b still waits?"
+        )
+    direct: Graph = {"a": {"c": 10.0, "b": 1.0}, "b": {"c": 1.0}, "c": {}}
+    cost = search(direct, "a", "c", zero)
+    if cost != 2:
+        return (
+            f"a–c is 10, a–b and b–c are 1 each: your cost from a to c is {cost}. When is the way to the goal known to be the "
+            "cheapest: when the goal is put into the open list, or when it is taken out?"
+        )
+    if search({"a": {}, "b": {}}, "a", "b", zero) != math.inf:
+        return "Where there is no way the cost is infinite: return math.inf when the open list is empty."
+    for seed in range(40):
+        graph, estimate = random_roads(seed)
+        cost, cheapest = search(graph, 0, 11, estimate.__getitem__), cheapest_way(graph, 0, 11)
+        if not math.isclose(cost, cheapest, rel_tol=1e-9):
+            return (
+                f"On a map of 12 places the cheapest way costs {cheapest:.3f}, yours {cost:.3f}. In which order do "
+                "nodes come out of the open list?"
+            )
+    return ""
+
+
+def random_roads(seed: int) -> tuple[Graph, dict[Hashable, float]]:
+    """Roads between 12 random places, and the straight distance from each to the last."""
+    rng = np.random.default_rng(seed)
+    places = rng.random((12, 2))
+    graph: dict[Hashable, dict[Hashable, float]] = {place: {} for place in range(12)}
+    for one, other in itertools.combinations(range(12), 2):
+        if rng.random() < 0.4:
+            graph[one][other] = graph[other][one] = float(math.dist(places[one], places[other]) * rng.uniform(1, 2))
+    return graph, {place: math.dist(places[place], places[11]) for place in range(12)}
+
+
+def cheapest_way(graph: Graph, start: Hashable, goal: Hashable) -> float:
+    """Cost of the cheapest way: as many rounds over all roads as there are places (Bellman and Ford)."""
+    cost = {place: math.inf for place in graph} | {start: 0.0}
+    for _ in graph:
+        for place, roads in graph.items():
+            for neighbour, length in roads.items():
+                cost[neighbour] = min(cost[neighbour], cost[place] + length)
+    return cost[goal]
