@@ -149,7 +149,7 @@ def set_stage(scene: meshcat.Visualizer, city: City) -> None:
     camera.set_property("fov", FIELD_OF_VIEW_DEG)
     camera.set_property("near", reach / 100)
     camera.set_property("far", 20 * reach)
-    camera.set_property("position", [0.45 * reach, 0.8 * reach, 1.1 * reach])  # east, up, south
+    camera.set_property("position", [0.48 * reach, 0.86 * reach, 1.18 * reach])  # east, up, south
     corners = np.array([(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])])
     ground = np.column_stack([corners, np.full(4, low[2] - 0.002 * reach)])
     scene["ground"].set_object(mesh(ground[[[0, 1, 2], [0, 2, 3]]]), g.MeshBasicMaterial(color=0xE9E9E4))

@@ -26,15 +26,17 @@ def exercise_1(octile: Callable[[int, int, int], float]) -> str:
     if agrees(octile_distance, sorted_ahead):
         shuffled = [order for offset in sorted_ahead for order in itertools.permutations(offset)]
         if not agrees(octile_distance, shuffled):  # type: ignore[arg-type]
-            return "It is right where |dx| ≥ |dy| ≥ |dz|. The goal may lie in any direction: which of the three is largest?"
+            return "It is right where |dx| ≥ |dy| ≥ |dz|. The goal may lie anywhere: which of the three is largest?"
         mirrored = [tuple(s * d for s, d in zip(sign, o, strict=True)) for sign in MOVES for o in shuffled if all(sign)]
         if not agrees(octile_distance, mirrored):  # type: ignore[arg-type]
-            return "It is right for goals to the north-east and above. What are dx, dy, dz when the goal lies to the west?"
+            return (
+                "It is right for goals to the north-east and above. What are dx, dy, dz when the goal lies to the west?"
+            )
         return ""
     for formula, hint in OCTILE_MISTAKES:
         if agrees(formula, sorted_ahead):
             return hint
-    return f"For (5, 3, 1) you get {octile(5, 3, 1):.3f}. Write down the five moves of the shortest way, and add their lengths."
+    return f"For (5, 3, 1) you get {octile(5, 3, 1):.3f}. Write down the five moves of the shortest way, and add up their lengths."
 
 
 def octile_distance(dx: int, dy: int, dz: int) -> float:
@@ -96,7 +98,7 @@ def exercise_2(legal: Callable[[np.ndarray, Move, Move], bool]) -> str:
     try:
         allowed = [case for case in beyond if legal(*case)]
     except IndexError:
-        return "Inside of the map it is right. At its upper borders it raises IndexError: look whether the target is on the map."
+        return "Inside of the map it is right. At its upper borders it raises IndexError: is the target on the map?"
     if allowed:
         node, move = allowed[0][1:]
         return (
@@ -132,8 +134,8 @@ def faces_are_free(occupied: np.ndarray, node: Move, move: Move) -> bool:
 LEGAL_MISTAKES: list[tuple[Callable[[np.ndarray, Move, Move], bool], str]] = [
     (
         lambda occupied, node, move: not occupied[target_of(node, move)],
-        "You look at the voxel where the move ends, and nowhere else: that cuts corners. Which voxels does a diagonal move "
-        "touch on its way?",
+        "You look at the voxel where the move ends, and nowhere else: that cuts corners. Which voxels does a "
+        "diagonal move touch on its way?",
     ),
     (
         faces_are_free,
@@ -156,24 +158,26 @@ def exercise_3(search: Callable[[Graph, Hashable, Hashable, Callable[[Hashable],
     chain: Graph = {"a": {"b": 1.0}, "b": {"c": 1.0}, "c": {}}
     steps_left = {"a": 2.0, "b": 1.0, "c": 0.0}
     cost = search(chain, "a", "c", steps_left.__getitem__)
+    if cost is None:
+        return "Your search returns nothing: its answer is the cost of the cheapest way."
     if cost != 2:
         return (
-            f"A single road a–b–c, 1 long twice, and an estimate that is exact: your cost is {cost}. What has been added "
-            "to g that is no road?"
+            f"The only way is a–b–c, twice 1 long, and the estimate is exact: your cost is {cost}. "
+            "What has been added to g that is no road?"
         )
     late: Graph = {"a": {"b": 5.0, "c": 1.0}, "b": {"d": 1.0}, "c": {"b": 1.0}, "d": {}}
     cost = search(late, "a", "d", zero)
     if cost != 3:
         return (
-            f"a–b is 5, a–c and c–b are 1 each, b–d is 1: your cost from a to d is {cost}. The direct way to b is found first. "
-            "What happens when a better one turns up while b still waits?"
+            f"a–b is 5, a–c and c–b are 1 each, b–d is 1: your cost from a to d is {cost}. The direct way to b is found "
+            "first. What happens when a better one turns up while b still waits?"
         )
     direct: Graph = {"a": {"c": 10.0, "b": 1.0}, "b": {"c": 1.0}, "c": {}}
     cost = search(direct, "a", "c", zero)
     if cost != 2:
         return (
-            f"a–c is 10, a–b and b–c are 1 each: your cost from a to c is {cost}. When is the way to the goal known to be the "
-            "cheapest: when the goal is put into the open list, or when it is taken out?"
+            f"a–c is 10, a–b and b–c are 1 each: your cost from a to c is {cost}. When is the way to the goal known to "
+            "be the cheapest: when the goal is put into the open list, or when it is taken out?"
         )
     if search({"a": {}, "b": {}}, "a", "b", zero) != math.inf:
         return "Where there is no way the cost is infinite: return math.inf when the open list is empty."
