@@ -98,7 +98,11 @@ def orphaned() -> list[Path]:
 def executed(notebook: NotebookNode) -> NotebookNode:
     """The notebook run from top to bottom in a fresh kernel, stripped."""
     client = NotebookClient(
-        notebook, timeout=SECONDS_PER_CELL, record_timing=False, resources={"metadata": {"path": str(HERE)}}
+        notebook,
+        timeout=SECONDS_PER_CELL,
+        record_timing=False,
+        coalesce_streams=True,  # else the prints of a cell are split at random
+        resources={"metadata": {"path": str(HERE)}},
     )
     client.execute()
     return stripped(notebook)

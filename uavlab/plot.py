@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from uavlab.city import City
@@ -177,7 +178,7 @@ def still(city: City, *routes: Route, elevation_deg: float = 32.0, azimuth_deg: 
         From where it is seen [degrees]: height above the horizon, direction counted from east.
     """
     figure = plt.figure(figsize=(7.2, 5.4), dpi=DPI)
-    axes: Any = figure.add_axes((0, 0, 1, 0.95), projection="3d", computed_zorder=False)
+    axes: Any = figure.add_axes((0, 0.04, 1, 0.9), projection="3d", computed_zorder=False)
     low, high = city.bounds
     longest = float((high - low).max())
     polygons, colors = [], []
@@ -199,7 +200,8 @@ def still(city: City, *routes: Route, elevation_deg: float = 32.0, azimuth_deg: 
         axes.add_collection3d(Poly3DCollection(np.concatenate(polygons), facecolors=faces, edgecolors=faces, lw=0.3))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set(xlabel="x, east [m]", ylabel="y, north [m]", zlabel="z, up [m]", title=city.name)
-    axes.set_box_aspect(high - low, zoom=1.1)
+    axes.set_box_aspect(high - low, zoom=0.95)
+    axes.zaxis.set_major_locator(MaxNLocator(2 + round(4 * (high - low)[2] / longest)))
     axes.view_init(elevation_deg, azimuth_deg)
     if routes:
         axes.legend(loc="upper left", fontsize=8)

@@ -56,4 +56,6 @@ def check(number: str, answer: Any) -> Verdict:
     except NotImplementedError:
         return Verdict(number, "There is no answer yet: the function still raises NotImplementedError.")
     except Exception as error:
+        if "not callable" in str(error):
+            return Verdict(number, "Hand over the function itself, without brackets, not what it returns.")
         return Verdict(number, f"Your answer raises {type(error).__name__}: {error}")

@@ -126,8 +126,8 @@ def penalty_zone(city: City, safe_distance: float, *, penalty: float, shape: str
         ω, at least 0; typically 0.1 to 2.
     shape : {"ball", "ring"}
         "ball" measures the distance to the nearest surface. "ring" looks, as the paper does, only at the 26 points
-        of the outer ring, r cells away along each axis; r is the least with r + ½ cells ≥ D_min. Thin obstacles can
-        stand between its points.
+        of the outer ring, r cells away along each axis; r is the least with r + ½ cells ≥ D_min. It looks through
+        walls thinner than r cells and between its points.
 
     Returns
     -------
