@@ -19,11 +19,12 @@ def labels(figure):
 
 
 def test_plan_has_equal_scales_and_the_route(table1, route):
-    axes = plot.plan(table1, route).axes[0]
+    figure = plot.plan(table1, route)
+    axes = figure.axes[0]
     assert axes.get_aspect() == 1.0
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("x, east [m]", "y, north [m]")
     assert any(np.array_equal(line.get_xydata(), route.points[:, :2]) for line in axes.lines)
-    assert "A*" in axes.get_legend().get_texts()[0].get_text()
+    assert figure.legends[0].get_texts()[0].get_text() == "A*, 66.4 m"
 
 
 def test_plan_shows_how_high_the_buildings_are(table1):
@@ -72,7 +73,7 @@ def test_route_that_did_not_arrive_is_named_and_not_drawn(table1):
     lost = Route(np.empty((0, 3)), "A*", reached=False, reason="no free way")
     for figure in (plot.plan(table1, lost), plot.profile(table1, lost), plot.still(table1, lost)):
         assert figure.axes
-    assert plot.plan(table1, lost).axes[0].get_legend().get_texts()[0].get_text() == "A*: not reached"
+    assert plot.plan(table1, lost).legends[0].get_texts()[0].get_text() == "A*: not reached"
 
 
 def test_voxel_surface_encloses_the_occupied_volume():

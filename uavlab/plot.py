@@ -49,9 +49,7 @@ def plan(city: City, *routes: Route) -> Figure:
     figure, axes = new_figure(6.4, 5.4)
     tops = np.where(city.occupied, (np.arange(city.shape[2]) + 1) * city.cell, 0).max(axis=2)
     image = draw_map(axes, city, np.where(tops > 0, tops, np.nan), "Greys", vmin=0.0, vmax=1.3 * max(tops.max(), 1.0))
-    figure.colorbar(image, ax=axes, label="top of the buildings above the ground [m]", boundaries=None).ax.set_ylim(
-        0, max(tops.max(), 1.0)
-    )
+    add_color_bar(figure, axes, image, "top of the buildings above the ground [m]").ax.set_ylim(0, max(tops.max(), 1.0))
     draw_routes(axes, routes)
     axes.set_title(city.name)
     return finished(figure)
@@ -86,7 +84,7 @@ def section(
     figure, axes = new_figure(6.4, 5.4)
     layer = (city.clearance if values is None else np.asarray(values))[:, :, k]
     image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL)
-    figure.colorbar(image, ax=axes, label=label)
+    add_color_bar(figure, axes, image, label)
     axes.set_facecolor("black")
     draw_routes(axes, routes)
     axes.set_title(f"{city.name}, {height:g} m above the ground (buildings black)")
@@ -107,15 +105,14 @@ def profile(city: City, *routes: Route, safe_distance: float | None = None) -> F
         below.annotate(f"to keep: {safe_distance:g} m", (0.995, safe_distance), xycoords=("axes fraction", "data"),
                        ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
     above.set_ylabel("height [m]")
-    above.set_ylim(bottom=0)
     below.set_ylabel("clearance [m]")
-    below.set_ylim(bottom=0)
     below.set_xlabel("distance flown [m]")
     if above.lines:
         above.legend(fontsize=8)
     for axes in (above, below):
         axes.grid(alpha=0.3)
         axes.margins(x=0.01)
+        axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
     return finished(figure)
 
 
@@ -139,18 +136,17 @@ def expansions(city: City, *routes: Route) -> Figure:
         1, len(routes), figsize=(3.4 * len(routes) + 1, 3.7), dpi=DPI, squeeze=False, layout="constrained"
     )
     built = city.occupied.any(axis=2)
-    most = max(route.info["expanded"] for route in routes)
     for axes, route in zip(all_axes[0], routes, strict=True):
         order = route.info["order"]
         first = np.full(city.shape[:2], np.inf)
         index = city.index_of(order)
-        np.minimum.at(first, (index[:, 0], index[:, 1]), np.arange(len(order)))
+        np.minimum.at(first, (index[:, 0], index[:, 1]), np.arange(len(order)) / len(order))
         draw_map(axes, city, np.where(built, 1.0, np.nan), "Greys", vmin=0, vmax=3)
-        image = draw_map(axes, city, np.where(np.isfinite(first), first, np.nan), SEQUENTIAL, vmin=0, vmax=most)
+        image = draw_map(axes, city, np.where(np.isfinite(first), first, np.nan), SEQUENTIAL, vmin=0, vmax=1)
         if len(route.points) > 1:
             axes.plot(*route.points[:, :2].T, color=ROUTE_COLORS[0], linewidth=1.5)
         axes.set_title(f"{route.info.get('heuristic', route.planner)}: {len(order):,} expanded", fontsize=10)
-    figure.colorbar(image, ax=all_axes, label="first expanded as number")
+    figure.colorbar(image, ax=all_axes, label="first looked at, as a share of the search")
     return finished(figure)
 
 
@@ -158,7 +154,7 @@ def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
     """Named values as horizontal bars, each with its number; `label` names the quantity and its unit."""
     figure, axes = plt.subplots(figsize=(6.4, 0.5 * len(values) + 1.1), dpi=DPI, layout="constrained")
     drawn = axes.barh(list(values), list(values.values()), color=ROUTE_COLORS[1])
-    axes.bar_label(drawn, fmt="{:,.4g}", padding=3)
+    axes.bar_label(drawn, [f"{v:,.0f}" if abs(v) >= 100 else f"{v:.3g}" for v in values.values()], padding=3)
     axes.invert_yaxis()
     axes.set_xlabel(label)
     axes.set_title(title)
@@ -193,6 +189,7 @@ def still(city: City, *routes: Route, elevation_deg: float = 32.0, azimuth_deg: 
         axes.plot([], [], [], color=color, linewidth=3, label=label_of(route))
         if len(route.points) > 1:
             ribbon = ribbons(route.resample(longest / 60).points, longest / 180)
+            axes.plot(*route.points.T, color=color, linewidth=0.8, alpha=0.5, zorder=9)  # what a building hides
             polygons.append(ribbon)
             colors.append(np.tile(to_rgb(color), (len(ribbon), 1)))
     if polygons:
@@ -278,6 +275,11 @@ def draw_map(axes: Axes, city: City, values: np.ndarray, colors, **limits):
     return axes.imshow(values.T, origin="lower", extent=(west, east, south, north), cmap=colors, **limits)
 
 
+def add_color_bar(figure: Figure, axes: Axes, image, label: str):
+    """A colour bar beside a map, as high as the map."""
+    return figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
+
+
 def draw_routes(axes: Axes, routes: Sequence[Route]) -> None:
     """Routes from above: a disc where each starts, a triangle at its goal."""
     for route, color in zip(routes, route_colors(len(routes)), strict=True):
@@ -286,7 +288,7 @@ def draw_routes(axes: Axes, routes: Sequence[Route]) -> None:
         for point, marker in ((route.points[:1], "o"), (route.points[-1:], "^")):
             axes.plot(*point[:, :2].T, marker, color=color, markersize=9, markeredgecolor="white")
     if routes:
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), fontsize=8)
+        axes.figure.legend(loc="outside lower center", fontsize=8)
 
 
 def label_of(route: Route) -> str:

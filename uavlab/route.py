@@ -116,6 +116,30 @@ class Route:
         clearance = self.clearance_profile(city)[1]
         return float(clearance.min()) if len(clearance) else float("nan")
 
+    def integral(self, city: City, values: np.ndarray) -> float:
+        """∫ values ds along the route, by exact voxel traversal; the values hold for a whole voxel.
+
+        Parameters
+        ----------
+        city : City
+            Whose voxels the values belong to.
+        values : (nx, ny, nz) array
+            A price per metre gives the cost of the route, True in a zone the metres within it.
+
+        Raises
+        ------
+        ValueError
+            If the values haven't the city's shape, or the route leaves the map.
+        """
+        if np.shape(values) != city.shape:
+            raise ValueError(f"values must have the city's shape {city.shape}, got {np.shape(values)}")
+        if not city.inside(self.points).all():
+            raise ValueError("the route leaves the map, where values says nothing")
+        if len(self.points) == 0:
+            return 0.0
+        index, length = city.voxels_along(self.points)
+        return float(np.asarray(values, dtype=float)[tuple(index.T)] @ length)
+
     def resample(self, step: float) -> "Route":
         """The same way with a waypoint at least every `step` metres; all waypoints stay.
 

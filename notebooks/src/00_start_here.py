@@ -10,8 +10,8 @@
 # # Start here: a route through a city in five minutes
 #
 # A small UAV stands in the notch of an L-shaped building, 30 m above the ground. It has to get to a point above another
-# building. Which way is short, and which way is still safe when a gust pushes it a few metres to the side? This notebook goes
-# once from the city to a route that you can turn in your hands. The other notebooks open each step up.
+# building. Which way is short, and which way is still safe when a gust pushes it a few metres to the side? This
+# notebook goes once from the city to a route that you can turn in your hands. The other notebooks open each step up.
 #
 # *Run All* (in the menu **Run**) executes everything and brings the 3D scenes to life. Until then a still picture
 # stands in their place.
@@ -65,9 +65,9 @@ plot.profile(city, shortest)
 #
 # ## A way that keeps its distance
 #
-# REPARE's Eq. 7 asks for a distance that covers how far gusts push the UAV, plus half its body; for a light load in mild
-# wind its Table 4 has 3.5 m. Voxels that are nearer to a wall are now closed. And since nothing forces a UAV to turn by 45°
-# or 90° from voxel to voxel, `shortcut` then joins by straight lines what can see each other.
+# REPARE's Eq. 7 asks for a distance that covers how far gusts push the UAV, plus half its body; for a light load in
+# mild wind its Table 4 has 3.5 m. Voxels that are nearer to a wall are now closed. And since nothing forces a UAV to
+# turn by 45° or 90° from voxel to voxel, `shortcut` then joins by straight lines what can see each other.
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -97,8 +97,8 @@ scene.show(city, straight, shortest, safe_distance=safe_distance)
 # ## Your turn
 #
 # Move the goal, or ask for more distance. What happens when the distance is larger than half the gap between two
-# buildings? And when the goal itself is too near to a wall? A question that has no answer is refused, with what would do
-# instead:
+# buildings? And when the goal itself is too near to a wall? A question that has no answer is refused, with what would
+# do instead:
 
 # %%
 # NBVAL_CHECK_OUTPUT

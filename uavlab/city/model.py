@@ -171,7 +171,8 @@ class City:
         if index.shape[-1:] != (3,):
             raise ValueError(f"index must have shape (..., 3), got {index.shape}")
         if ((index < 0) | (index >= self.shape)).any():
-            raise ValueError(f"index lies outside of the map of {self.shape} voxels: {index.tolist()}")
+            wrong = index[((index < 0) | (index >= self.shape)).any(axis=-1)].reshape(-1, 3)[0]
+            raise ValueError(f"index {tuple(wrong.tolist())} lies outside of the map of {self.shape} voxels")
         return np.ravel_multi_index(tuple(np.moveaxis(index, -1, 0)), self.shape)
 
     def index_of(self, code: npt.ArrayLike) -> np.ndarray:
@@ -184,7 +185,8 @@ class City:
         """
         code = np.asarray(code)
         if ((code < 0) | (code >= self.occupied.size)).any():
-            raise ValueError(f"code must be from 0 to {self.occupied.size - 1}, got {code.tolist()}")
+            wrong = code[(code < 0) | (code >= self.occupied.size)].flat[0]
+            raise ValueError(f"code must be from 0 to {self.occupied.size - 1}, got {wrong}")
         return np.stack(np.unravel_index(code, self.shape), axis=-1)
 
     def inside(self, points: npt.ArrayLike) -> np.ndarray:
@@ -203,6 +205,46 @@ class City:
         """Name of the building in whose voxels a point [m] lies; "an obstacle" if the map knows no buildings."""
         center = self.center_of(self.cell_of(point))
         return next((f"building {b.name!r}" for b in self.buildings if b.contains(center)), "an obstacle")
+
+    def random_pairs(
+        self, count: int, rng: np.random.Generator | int, *, apart: float = 40.0, min_clearance: float = 0.0
+    ) -> np.ndarray:
+        """Starts and goals for experiments: centres of voxels, drawn evenly, at least `apart` from each other.
+
+        Parameters
+        ----------
+        count : int
+            How many pairs.
+        rng : numpy.random.Generator or int
+            A generator, or the seed of one.
+        apart : float
+            Least straight distance between start and goal [m].
+        min_clearance : float
+            Least distance of both to obstacles [m]; 0 allows every free voxel.
+
+        Returns
+        -------
+        (count, 2, 3) float array
+            Start and goal of each pair [m].
+
+        Raises
+        ------
+        ValueError
+            If no such pairs are found in this city.
+        """
+        rng = np.random.default_rng(rng)
+        allowed = np.flatnonzero(~self.occupied if min_clearance == 0 else self.clearance >= min_clearance)
+        pairs: list[np.ndarray] = []
+        for _ in range(1000 * count if len(allowed) else 0):
+            start, goal = self.center_of(self.index_of(allowed[rng.integers(len(allowed), size=2)]))
+            if np.linalg.norm(goal - start) >= apart:
+                pairs.append(np.array([start, goal]))
+            if len(pairs) == count:
+                return np.array(pairs)
+        raise ValueError(
+            f"no {count} pairs found that are apart={apart:g} m from each other and min_clearance={min_clearance:g} m "
+            f"from obstacles; the map measures {' × '.join(f'{extent:g}' for extent in np.ptp(self.bounds, axis=0))} m"
+        )
 
     def voxels_along(self, points: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """The voxels that a polyline passes through, none left out, and its length in each.

@@ -71,8 +71,8 @@ def astar(
     Returns
     -------
     Route
-        `cost`; `info["expanded"]`, the number of expansions, `info["elapsed"]` [s] and, with `record`,
-        `info["order"]`, the node codes as they were expanded. `reached` is False where no way exists.
+        `cost`; `info["expanded"]`, the number of expansions, `info["elapsed"]` [s], `info["heuristic"]` and, with
+        `record`, `info["order"]`, the node codes as they were expanded. `reached` is False where no way exists.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def astar(
         open_list(city.occupied.size),
         record,
     )
-    info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
+    info = {"expanded": expanded, "elapsed": time.perf_counter() - began, "heuristic": heuristic}
     if record:
         info["order"] = order[:expanded]
     if parent[target] == UNSEEN:
