@@ -1,0 +1,129 @@
+"""The vehicle: what it weighs, how hard its rotors pull, and how much of that is left against the wind.
+
+A multirotor in hover holds its weight with the vertical part of its thrust. What remains sideways, the horizontal
+reserve, is all it has against a gust: a heavy load takes it away twice, by its weight and by leaving less to tilt.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+GRAVITY = 9.81
+"""Acceleration of free fall [m/s²]."""
+
+
+@dataclass(frozen=True)
+class UAV:
+    """A multirotor.
+
+    Attributes
+    ----------
+    mass : float
+        Of the airframe with its battery, without payload [kg].
+    thrust : float
+        Greatest total thrust of the rotors [N]; must exceed the weight.
+    drag_area : float
+        Drag coefficient times frontal area, C·S [m²]; 0.02 to 0.1 for small quadrotors.
+    rain_area : float
+        Area that rain falls on, seen from above [m²].
+    diameter : float
+        Of the body, rotors included, D_uav [m].
+    cruise_speed, top_speed : float
+        Airspeed on missions and at most [m/s].
+    max_tilt : float
+        Greatest tilt of the rotor plane [rad].
+    payload : float
+        Load carried [kg].
+    name : str
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or out of its range, or the rotors can't lift the weight.
+    """
+
+    mass: float
+    thrust: float
+    drag_area: float
+    rain_area: float
+    diameter: float
+    cruise_speed: float
+    top_speed: float
+    max_tilt: float = np.radians(35.0)
+    payload: float = 0.0
+    name: str = "UAV"
+
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if item.name == "name":
+                continue
+            if not np.isfinite(value) or value < 0 or (value == 0 and item.name != "payload"):
+                least = "at least 0" if item.name == "payload" else "above 0"
+                raise ValueError(f"{item.name} must be finite and {least}, got {value!r}")
+        if self.max_tilt >= np.pi / 2:
+            raise ValueError(
+                f"max_tilt must be below π/2 in radians, got {self.max_tilt!r}; convert with numpy.radians"
+            )
+        if self.cruise_speed > self.top_speed:
+            raise ValueError(f"cruise_speed {self.cruise_speed:g} m/s is above top_speed {self.top_speed:g} m/s")
+        if self.thrust <= self.weight:
+            raise ValueError(
+                f"thrust {self.thrust:g} N can't lift {self.mass:g} kg + payload {self.payload:g} kg "
+                f"({self.weight:.1f} N): carry less"
+            )
+
+    @property
+    def weight(self) -> float:
+        """Weight with payload, G_uav + G_s [N]."""
+        return (self.mass + self.payload) * GRAVITY
+
+    def loaded(self, payload: float) -> "UAV":
+        """The same vehicle with another payload [kg]."""
+        return replace(self, payload=payload)
+
+    def horizontal_reserve(self, downward_force: float = 0.0) -> float:
+        """Force left against the wind while hovering [N].
+
+        √(T² − (G + F)²), and no more than (G + F)·tan(tilt limit).
+
+        Parameters
+        ----------
+        downward_force : float
+            Force on top of the weight [N], such as rain; 0 when it is dry.
+
+        Returns
+        -------
+        float
+            0 when the rotors can only just hold the height, or not even that.
+        """
+        down = self.weight + downward_force
+        return float(min(np.sqrt(max(self.thrust**2 - down**2, 0.0)), down * np.tan(self.max_tilt)))
+
+
+RISK_QUADROTOR = UAV(
+    mass=1.38,
+    thrust=28.0,
+    drag_area=0.3 * 0.0188,
+    rain_area=np.pi * 0.2**2,
+    diameter=0.4,
+    cruise_speed=16.0,
+    top_speed=20.0,
+    name="1.38 kg quadrotor of PSO-BAS Table 2",
+)
+"""Mass, radius 0.2 m, speed 16 m/s, C = 0.3 and A = 0.0188 m² from PSO-BAS Table 2, where C·A is that of the wreck
+in free fall; thrust about twice the weight and the top speed are ours, usual for the class."""
+
+LIGHT_QUADROTOR = UAV(
+    mass=1.5,
+    thrust=28.0,
+    drag_area=0.06,
+    rain_area=0.1,
+    diameter=1.0,
+    cruise_speed=5.0,
+    top_speed=18.0,
+    max_tilt=np.radians(60.0),
+    name="light quadrotor for REPARE's cases",
+)
+"""REPARE gives no vehicle. With these values a payload of 0, 0.25, 0.6 or 1 kg and a wind of 1.5, 6, 7.5 or 9 m/s give
+the distances of its Table 4; a diameter of 1 m is what its 3.5/4.5/5.5 m leave for rings of 3/4/5 m."""

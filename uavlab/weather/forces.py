@@ -1,0 +1,368 @@
+"""From the weather to forces: air density, rain, drag, wind along a course, and which weather grounds which load.
+
+REPARE Eqs 1-5, each in the form that has the right unit and sign; `as_printed=True` gives the paper's. Forces are in
+newtons, speeds in m/s. Wind is where the air moves to: a vector (east, north) or (east, north, up). Only the
+meteorologist's direction, in `Weather`, is where the wind comes from.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab.vehicle import UAV
+
+WATER_DENSITY = 1000.0
+"""Of rain [kg/m³]."""
+
+DROP_SPEED = 9.0
+"""Fall speed of large drops, about 5 mm wide [m/s]; drops of drizzle fall at 2 m/s."""
+
+STANDARD_AIR = 1.225
+"""Density of dry air at 15 °C and 1013.25 hPa [kg/m³]."""
+
+GUST_FACTOR = 1.75
+"""Of the strongest gust to the mean wind, in cities typically 1.5 to 2."""
+
+DRY_AIR, WATER_VAPOUR = 287.05, 461.5  # gas constants [J/(kg K)]
+
+
+@dataclass(frozen=True)
+class Weather:
+    """One state of the weather, as a forecast or a station gives it.
+
+    Attributes
+    ----------
+    temperature_c : float
+        Air temperature [°C], −60 to 60.
+    humidity_percent : float
+        Relative humidity [%], 0 to 100.
+    pressure_hpa : float
+        Air pressure at the place [hPa], 300 to 1100.
+    forecast_wind, forecast_max_wind : float
+        Mean and strongest wind of the forecast, V_μF and V_MaxF [m/s].
+    measured_wind : float
+        Mean wind that the UAV measures, V_μS [m/s].
+    wind_from_deg : float
+        Where the wind comes from [degrees], clockwise from north, 0 to 360.
+    rain_mm_per_h : float
+        Rain rate [mm/h]; above 50 is a cloudburst.
+    radiation : float
+        Global horizontal solar radiation [W/m²].
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite or out of its range; a pressure in Pa is recognised.
+    """
+
+    temperature_c: float = 15.0
+    humidity_percent: float = 50.0
+    pressure_hpa: float = 1013.25
+    forecast_wind: float = 0.0
+    forecast_max_wind: float = 0.0
+    measured_wind: float = 0.0
+    wind_from_deg: float = 0.0
+    rain_mm_per_h: float = 0.0
+    radiation: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_air(self.temperature_c, self.humidity_percent, self.pressure_hpa)
+        for name in ("forecast_wind", "forecast_max_wind", "measured_wind", "rain_mm_per_h", "radiation"):
+            not_negative(name, getattr(self, name))
+        if not 0 <= self.wind_from_deg <= 360:
+            raise ValueError(f"wind_from_deg must be from 0 to 360 degrees, got {self.wind_from_deg!r}")
+
+    @property
+    def air_density(self) -> float:
+        """Density of the moist air [kg/m³]."""
+        return float(air_density(self.temperature_c, self.humidity_percent, self.pressure_hpa))
+
+    @property
+    def reference_wind(self) -> "ReferenceWind":
+        """The wind to reckon with, Eq. 3."""
+        return reference_wind(self.forecast_wind, self.measured_wind, self.forecast_max_wind)
+
+    @property
+    def wind_direction(self) -> np.ndarray:
+        """Unit vector (east, north) of where the wind blows to."""
+        angle = np.radians(self.wind_from_deg)
+        return np.array([-np.sin(angle), -np.cos(angle)])
+
+
+class ReferenceWind(NamedTuple):
+    """Mean wind and gust to reckon with [m/s]."""
+
+    mean: float
+    gust: float
+
+
+def air_density(
+    temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_hpa: npt.ArrayLike
+) -> np.ndarray:
+    """Density of moist air: that of dry air and of water vapour at their partial pressures.
+
+    ρ = (p − e)/(R_d T) + e/(R_v T), e = humidity · 6.112 hPa · exp(17.62 t/(243.12 + t)) (Magnus formula, WMO).
+
+    Parameters
+    ----------
+    temperature_c : float or array
+        Temperature t [°C], −60 to 60.
+    humidity_percent : float or array
+        Relative humidity [%], 0 to 100.
+    pressure_hpa : float or array
+        Pressure p [hPa], 300 to 1100.
+
+    Returns
+    -------
+    array
+        ρ [kg/m³]; moist air is lighter than dry air.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of its range; a pressure in Pa is recognised.
+    """
+    check_air(temperature_c, humidity_percent, pressure_hpa)
+    celsius = np.asarray(temperature_c, dtype=float)
+    kelvin = celsius + 273.15
+    vapour = np.asarray(humidity_percent) * 6.112 * np.exp(17.62 * celsius / (243.12 + celsius))  # [Pa]: % · hPa
+    return (100.0 * np.asarray(pressure_hpa) - vapour) / (DRY_AIR * kelvin) + vapour / (WATER_VAPOUR * kelvin)
+
+
+def rain_force(
+    rain_mm_per_h: npt.ArrayLike,
+    area: float,
+    *,
+    drop_speed: float = DROP_SPEED,
+    restitution: float = 0.0,
+    as_printed: bool = False,
+) -> np.ndarray:
+    """Downward force of rain on the body, REPARE Eq. 1.
+
+    F = ρ (H/t) S V (1 + e): the momentum that falls on the area each second, and that with which drops bounce.
+
+    Parameters
+    ----------
+    rain_mm_per_h : float or array
+        Rain rate H/t [mm/h], at least 0.
+    area : float
+        Area S seen from above [m²], above 0.
+    drop_speed : float
+        Fall speed V of the drops [m/s]; 2 to 9.
+    restitution : float
+        Share e of their speed with which drops bounce, 0 (they stick) to 1.
+    as_printed : bool
+        H ρ V (1 − η)/t, η = 1 − e: the area is missing, so it is a pressure [Pa], and it vanishes when drops stick.
+
+    Returns
+    -------
+    array
+        F [N].
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    not_negative("rain_mm_per_h", rain_mm_per_h)
+    positive("area", area)
+    positive("drop_speed", drop_speed)
+    if not 0 <= restitution <= 1:
+        raise ValueError(f"restitution must be from 0 (drops stick) to 1 (they bounce back), got {restitution!r}")
+    pressure = WATER_DENSITY * np.asarray(rain_mm_per_h, dtype=float) / 3.6e6 * drop_speed
+    return pressure * restitution if as_printed else pressure * area * (1.0 + restitution)
+
+
+def lift_margin(
+    uav: UAV, rain: npt.ArrayLike = 0.0, *, safety_factor: float = 1.2, as_printed: bool = False
+) -> np.ndarray:
+    """Thrust left above what safety asks for, REPARE Eq. 2.
+
+    F_zMax − δ (G_uav + G_s + F_r); safe when above 0.
+
+    Parameters
+    ----------
+    uav : UAV
+    rain : float or array
+        Force of the rain F_r [N], `rain_force`.
+    safety_factor : float
+        δ, at least 1; 1.2 to 2.
+    as_printed : bool
+        F_zMax − δ (G_uav + G_s) − F_r: the rain stands outside of the safety factor.
+
+    Returns
+    -------
+    array
+        Margin [N]; negative: don't take off.
+
+    Raises
+    ------
+    ValueError
+        If the rain's force is negative or the safety factor below 1.
+    """
+    not_negative("rain", rain)
+    if not safety_factor >= 1:
+        raise ValueError(f"safety_factor must be at least 1, got {safety_factor!r}")
+    rain = np.asarray(rain, dtype=float)
+    return uav.thrust - safety_factor * uav.weight - (rain if as_printed else safety_factor * rain)
+
+
+def reference_wind(
+    forecast_mean: float,
+    measured_mean: float,
+    forecast_max: float = 0.0,
+    *,
+    gust_factor: float = GUST_FACTOR,
+    as_printed: bool = False,
+) -> ReferenceWind:
+    """Wind to reckon with, REPARE Eq. 3.
+
+    V_res = max(V_μF, V_μS), and the gust max(V_MaxF, gust factor · V_res).
+
+    Parameters
+    ----------
+    forecast_mean, measured_mean, forecast_max : float
+        V_μF, V_μS and V_MaxF [m/s], at least 0.
+    gust_factor : float
+        Strongest gust over mean wind, at least 1.
+    as_printed : bool
+        Take V_res for the gust as well: the paper introduces V_MaxF and never uses it.
+
+    Returns
+    -------
+    ReferenceWind
+        Mean and gust [m/s].
+
+    Raises
+    ------
+    ValueError
+        If a wind is negative or the gust factor below 1.
+    """
+    for name, value in (
+        ("forecast_mean", forecast_mean),
+        ("measured_mean", measured_mean),
+        ("forecast_max", forecast_max),
+    ):
+        not_negative(name, value)
+    if not gust_factor >= 1:
+        raise ValueError(f"gust_factor must be at least 1, got {gust_factor!r}")
+    mean = max(forecast_mean, measured_mean)
+    return ReferenceWind(mean, mean if as_printed else max(forecast_max, gust_factor * mean))
+
+
+def reachable_ground_speed(air_speed: float, wind: npt.ArrayLike, course: npt.ArrayLike) -> np.ndarray:
+    """Ground speed along a course at full air speed, in place of REPARE Eq. 4.
+
+    V = √(V_uav² − V_⊥²) + V_∥, with the wind's parts along and across the course. The UAV points into the crosswind so
+    that the two cancel. Eq. 4 as printed compares vectors, which has no meaning; compare this with V_d.
+
+    Parameters
+    ----------
+    air_speed : float
+        Greatest speed V_uav through the air [m/s], above 0.
+    wind : (..., D) array
+        Where the air moves to [m/s].
+    course : (..., D) array
+        Direction to fly, any length but 0.
+
+    Returns
+    -------
+    (...) array
+        V [m/s]; negative when the head wind is stronger than the UAV.
+
+    Raises
+    ------
+    ValueError
+        If the crosswind exceeds the air speed: no heading holds the course.
+    """
+    positive("air_speed", air_speed)
+    wind, course = np.asarray(wind, dtype=float), np.asarray(course, dtype=float)
+    if not np.isfinite(wind).all():
+        raise ValueError(f"wind must be finite, got {wind.tolist()}")
+    size = np.linalg.norm(course, axis=-1, keepdims=True)
+    if not (np.isfinite(size).all() and (size > 0).all()):
+        raise ValueError("course must be a direction: finite and not of length 0")
+    along = (wind * course / size).sum(axis=-1)
+    across = np.sqrt(np.maximum((wind**2).sum(axis=-1) - along**2, 0.0))
+    if (across > air_speed).any():
+        raise ValueError(
+            f"crosswind of {np.max(across):.1f} m/s is above air_speed {air_speed:g} m/s: no heading holds the course; "
+            "wait, or turn into the wind"
+        )
+    return np.sqrt(air_speed**2 - across**2) + along
+
+
+def wind_drag(
+    wind: npt.ArrayLike,
+    ground_velocity: npt.ArrayLike,
+    drag_area: float,
+    *,
+    air_density: float = STANDARD_AIR,
+    as_printed: bool = False,
+) -> np.ndarray:
+    """Drag of the wind on the body, REPARE Eq. 5.
+
+    F = ½ ρ C S |V_rel| V_rel, V_rel = wind − ground velocity.
+
+    Parameters
+    ----------
+    wind, ground_velocity : (..., D) arrays
+        Where the air and the UAV move to [m/s].
+    drag_area : float
+        C·S [m²], above 0.
+    air_density : float
+        ρ [kg/m³], above 0.
+    as_printed : bool
+        ½ C ρ S V_d, with the ground velocity for V_d: linear in the speed, so not a force, and without the wind.
+
+    Returns
+    -------
+    (..., D) array
+        F [N], in the direction in which the air pushes.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite or out of its range.
+    """
+    positive("drag_area", drag_area)
+    positive("air_density", air_density)
+    wind, ground_velocity = np.asarray(wind, dtype=float), np.asarray(ground_velocity, dtype=float)
+    for name, vector in (("wind", wind), ("ground_velocity", ground_velocity)):
+        if not np.isfinite(vector).all():
+            raise ValueError(f"{name} must be finite, got {vector.tolist()}")
+    if as_printed:
+        return 0.5 * air_density * drag_area * ground_velocity
+    relative = wind - ground_velocity
+    return 0.5 * air_density * drag_area * np.linalg.norm(relative, axis=-1, keepdims=True) * relative
+
+
+def check_air(temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_hpa: npt.ArrayLike) -> None:
+    within("temperature_c", temperature_c, -60.0, 60.0, "°C (kelvin? subtract 273.15)")
+    within("humidity_percent", humidity_percent, 0.0, 100.0, "%")
+    if (np.asarray(pressure_hpa) > 30_000).any():
+        raise ValueError(
+            f"pressure_hpa must be in hPa, got {np.max(np.asarray(pressure_hpa)):g}, which looks like Pa: divide by 100"
+        )
+    within("pressure_hpa", pressure_hpa, 300.0, 1100.0, "hPa")
+
+
+def within(name: str, value: npt.ArrayLike, low: float, high: float, unit: str) -> None:
+    values = np.asarray(value, dtype=float)
+    if not ((values >= low) & (values <= high)).all():
+        wrong = values[~((values >= low) & (values <= high))].flat[0]
+        raise ValueError(f"{name} must be from {low:g} to {high:g} {unit}, got {wrong:g}")
+
+
+def not_negative(name: str, value: npt.ArrayLike) -> None:
+    values = np.asarray(value, dtype=float)
+    if not (np.isfinite(values) & (values >= 0)).all():
+        raise ValueError(f"{name} must be finite and at least 0, got {np.min(values):g}")
+
+
+def positive(name: str, value: npt.ArrayLike) -> None:
+    values = np.asarray(value, dtype=float)
+    if not (np.isfinite(values) & (values > 0)).all():
+        raise ValueError(f"{name} must be finite and above 0, got {np.min(values):g}")
