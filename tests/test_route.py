@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uavlab.city import City
+from uavlab.planners import astar, shortcut
 from uavlab.route import Route
 
 ZIGZAG = Route([(0, 0, 0), (3, 4, 0), (3, 4, 12), (3, 4, 12)])
@@ -106,6 +107,55 @@ def test_clearance_of_one_waypoint_is_its_voxel_s_and_of_none_unknown():
     assert np.isinf(Route([(1, 1, 1), (2, 2, 2)]).clearance(City(np.zeros((3, 3, 3)))))
 
 
+def test_integral_weighs_each_voxel_by_the_metres_in_it():
+    city = hallway()
+    along = np.broadcast_to(np.arange(20)[:, None, None], city.shape)
+    through = Route([(5.5, 2.5, 2.5), (15.5, 2.5, 2.5)])
+    assert through.integral(city, along) == pytest.approx(5 / 2 + sum(range(6, 15)) + 15 / 2)
+    assert through.integral(city, np.ones(city.shape)) == pytest.approx(through.length)
+
+
+def test_integral_over_a_zone_is_the_metres_within_it():
+    city = hallway()
+    near = city.clearance < 3
+    assert near.dtype == bool
+    assert Route([(5.5, 2.5, 2.5), (15.5, 2.5, 2.5)]).integral(city, near) == pytest.approx(7)
+    assert Route([(5.5, 1.5, 2.5), (8.5, 4.5, 2.5)]).integral(city, near) == pytest.approx(1.5 * np.sqrt(2))
+    assert Route([(1.5, 1.5, 2.5), (6.5, 4.5, 2.5)]).integral(city, near) == 0
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_integral_agrees_with_fine_sampling(seed):
+    rng = np.random.default_rng(seed)
+    city = City(np.zeros((12, 10, 8), bool), cell=2.5, origin=(-4, 7, 1))
+    values = rng.uniform(0, 1, city.shape)
+    for zone in (values, values > 0.7):
+        route = Route(rng.uniform(*city.bounds, (4, 3)))
+        fine = route.resample(1e-3)
+        middles = (fine.points[1:] + fine.points[:-1]) / 2
+        sampled = zone[tuple(city.cell_of(middles).T)] @ fine.leg_lengths
+        crossings = len(city.voxels_along(route.points)[0])
+        assert route.integral(city, zone) == pytest.approx(sampled, abs=0.5e-3 * crossings)  # half a step at each
+        assert Route(route.points[::-1]).integral(city, zone) == pytest.approx(route.integral(city, zone))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_integral_of_the_price_is_what_planners_pay(seed):
+    rng = np.random.default_rng(seed)
+    city = City(rng.random((12, 12, 12)) < 0.1, cell=2.5, origin=(-4, 7, 1))
+    price = rng.uniform(1, 5, city.shape)
+    for start, goal in city.random_pairs(5, rng, apart=15):
+        route = astar(city, start, goal, price=price)
+        assert route.integral(city, price) == pytest.approx(route.cost)
+        straight = shortcut(route, city, price=price)
+        assert straight.integral(city, price) == pytest.approx(straight.cost)
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_integral_of_less_than_two_waypoints_is_0(count):
+    assert Route(np.ones((count, 3))).integral(hallway(), np.ones((20, 5, 5))) == 0
+
+
 coordinate = st.floats(-1e3, 1e3).map(lambda x: round(x, 3))
 routes = st.lists(st.tuples(coordinate, coordinate, coordinate), min_size=2, max_size=6).map(Route)
 
@@ -175,6 +225,14 @@ def test_what_a_route_says_of_itself():
         (lambda: Route([(1.0, 2.0)]), r"points must have shape \(N, 3\), got \(1, 2\)"),
         (lambda: Route([(1.0, 2.0, np.nan)]), "points must be finite: a waypoint is NaN or infinite"),
         (lambda: Route([(1.0, np.inf, 2.0)]), "points must be finite"),
+        (
+            lambda: Route([(1, 1, 1), (2, 2, 2)]).integral(hallway(), np.ones((20, 5))),
+            r"values must have the city's shape \(20, 5, 5\), got \(20, 5\)",
+        ),
+        (lambda: Route([(1, 1, 1)]).integral(hallway(), np.ones((5, 5, 20))), r"got \(5, 5, 20\)"),
+        (lambda: Route([(1, 1, 1)]).integral(hallway(), 1.0), r"got \(\)"),
+        (lambda: ZIGZAG.integral(hallway(), np.ones((20, 5, 5))), "the route leaves the map"),
+        (lambda: Route([(1, 1, 1), (1, 1, 5)]).integral(hallway(), np.ones((20, 5, 5))), "the route leaves the map"),
         (lambda: ZIGZAG.resample(0), "step must be a distance in metres, above 0, got 0"),
         (lambda: ZIGZAG.resample(-1.0), "above 0, got -1.0"),
         (lambda: ZIGZAG.resample(np.nan), "above 0, got nan"),

@@ -120,11 +120,9 @@ def load_city(name: str, cell: float | None) -> "City":
 
 def default_flight(city: "City", clearance: float) -> tuple[np.ndarray, np.ndarray]:
     """A flight across the map: Table 1's, else from the south-west to the north-east, amid the buildings."""
-    from uavlab.planners.grid import blocked_voxels
-
     if city.name == "Table 1":
         return np.array(TABLE1_FLIGHT[0]), np.array(TABLE1_FLIGHT[1])
-    free = np.argwhere(~blocked_voxels(city, clearance))
+    free = np.argwhere(~city.blocked(clearance))
     if len(free) == 0:
         raise ValueError(f"--clearance {clearance:g}: no voxel of the map is that far from all obstacles; ask for less")
     built = np.flatnonzero(city.occupied.any(axis=(0, 1)))

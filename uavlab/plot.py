@@ -156,6 +156,7 @@ def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
     drawn = axes.barh(list(values), list(values.values()), color=ROUTE_COLORS[1])
     axes.bar_label(drawn, [f"{v:,.0f}" if abs(v) >= 100 else f"{v:.3g}" for v in values.values()], padding=3)
     axes.invert_yaxis()
+    axes.xaxis.set_major_formatter("{x:,g}")
     axes.set_xlabel(label)
     axes.set_title(title)
     axes.margins(x=0.15)

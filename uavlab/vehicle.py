@@ -7,6 +7,7 @@ reserve, is all it has against a gust: a heavy load takes it away twice, by its 
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+import numpy.typing as npt
 
 GRAVITY = 9.81
 """Acceleration of free fall [m/s²]."""
@@ -55,9 +56,9 @@ class UAV:
 
     def __post_init__(self) -> None:
         for item in fields(self):
-            value = getattr(self, item.name)
             if item.name == "name":
                 continue
+            value = getattr(self, item.name)
             if not np.isfinite(value) or value < 0 or (value == 0 and item.name != "payload"):
                 least = "at least 0" if item.name == "payload" else "above 0"
                 raise ValueError(f"{item.name} must be finite and {least}, got {value!r}")
@@ -79,26 +80,35 @@ class UAV:
         return (self.mass + self.payload) * GRAVITY
 
     def loaded(self, payload: float) -> "UAV":
-        """The same vehicle with another payload [kg]."""
+        """The same vehicle with another payload [kg]; a ValueError if the rotors can't lift it."""
         return replace(self, payload=payload)
 
-    def horizontal_reserve(self, downward_force: float = 0.0) -> float:
-        """Force left against the wind while hovering [N].
+    def horizontal_reserve(self, downward_force: npt.ArrayLike = 0.0) -> np.ndarray:
+        """Force left against the wind while hovering.
 
         √(T² − (G + F)²), and no more than (G + F)·tan(tilt limit).
 
         Parameters
         ----------
-        downward_force : float
-            Force on top of the weight [N], such as rain; 0 when it is dry.
+        downward_force : float or array
+            Force F on top of the weight [N], such as rain, at least 0; 0 when it is dry.
 
         Returns
         -------
-        float
-            0 when the rotors can only just hold the height, or not even that.
+        float or array
+            Reserve [N]; 0 when the rotors can only just hold the height, or not even that.
+
+        Raises
+        ------
+        ValueError
+            If the force is negative or not finite.
         """
-        down = self.weight + downward_force
-        return float(min(np.sqrt(max(self.thrust**2 - down**2, 0.0)), down * np.tan(self.max_tilt)))
+        force = np.asarray(downward_force, dtype=float)
+        wrong = ~(np.isfinite(force) & (force >= 0))
+        if wrong.any():
+            raise ValueError(f"downward_force must be finite and at least 0, got {force[wrong].flat[0]:g}")
+        down = self.weight + force
+        return np.minimum(np.sqrt(np.maximum(self.thrust**2 - down**2, 0.0)), down * np.tan(self.max_tilt))
 
 
 RISK_QUADROTOR = UAV(

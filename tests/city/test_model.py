@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.stats import chisquare
 
 from uavlab.city import Building, City
 
@@ -95,6 +96,59 @@ def test_clearance_is_infinite_without_obstacles_and_computed_once():
     city = City(EMPTY)
     assert np.isinf(city.clearance).all()
     assert city.clearance is city.clearance
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_random_pairs_are_free_apart_and_clear(seed):
+    city = City(np.random.default_rng(seed).random((8, 9, 7)) < 0.02, cell=2.5, origin=(-40, 3, 1))
+    for apart, least in ((0.0, 0.0), (7.5, 0.0), (12.0, 2.5)):
+        pairs = city.random_pairs(50, seed, apart=apart, min_clearance=least)
+        assert pairs.shape == (50, 2, 3)
+        index = city.cell_of(pairs)
+        assert np.array_equal(city.center_of(index), pairs)
+        assert city.is_free(pairs).all()
+        assert city.clearance[tuple(np.moveaxis(index, -1, 0))].min() >= least
+        assert np.linalg.norm(pairs[:, 1] - pairs[:, 0], axis=1).min() >= apart
+
+
+def test_random_pairs_are_the_seed_s_or_the_generator_s(table1):
+    pairs = table1.random_pairs(20, 6)
+    assert np.array_equal(table1.random_pairs(20, 6), pairs)
+    assert np.array_equal(table1.random_pairs(20, np.random.default_rng(6)), pairs)
+    assert np.array_equal(table1.random_pairs(5, 6), pairs[:5])
+    assert not np.array_equal(table1.random_pairs(20, 7), pairs)
+    rng = np.random.default_rng(6)
+    in_two_parts = [table1.random_pairs(12, rng), table1.random_pairs(8, rng)]  # each goes on where the last one ended
+    assert np.array_equal(np.concatenate(in_two_parts), pairs)
+
+
+def test_random_pairs_leave_the_global_state_alone():
+    before = np.random.get_state()[1].tolist()  # noqa: NPY002
+    City(EMPTY).random_pairs(10, 1, apart=1)
+    assert np.random.get_state()[1].tolist() == before  # noqa: NPY002
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_random_pairs_are_drawn_evenly(seed):
+    occupied = np.zeros((4, 3, 2), bool)
+    occupied[1, 1] = True
+    city = City(occupied)
+    count = np.zeros(city.shape)
+    np.add.at(count, tuple(city.cell_of(city.random_pairs(1100, seed, apart=0)).reshape(-1, 3).T), 1)
+    assert not count[occupied].any()
+    assert chisquare(count[~occupied]).pvalue > 1e-3  # 22 voxels, 100 times each
+
+
+def test_random_pairs_may_keep_just_the_distances_asked_for():
+    wall = np.zeros((9, 2, 1), bool)
+    wall[0] = True
+    pairs = City(wall).random_pairs(200, 3, apart=3.0, min_clearance=4.5)  # rows 4.5 to 7.5 m from the wall
+    assert np.unique(pairs[..., 0]).tolist() == [5.5, 8.5]
+    assert np.linalg.norm(pairs[:, 1] - pairs[:, 0], axis=1).min() == 3.0
+
+
+def test_without_obstacles_every_clearance_is_kept():
+    assert City(EMPTY).random_pairs(3, 0, apart=2, min_clearance=1e6).shape == (3, 2, 3)
 
 
 grid_or_any = st.one_of(st.floats(-3, 9), st.integers(-6, 18).map(lambda half: half / 2))
@@ -210,6 +264,8 @@ def test_a_city_keeps_what_it_was_given():
             lambda: City.from_buildings([BOX], cell=0.01, origin=(0, 0, 0), size=(10, 10, 10)),
             "cell=0.01 m gives 1000 × 1000 × 1000 voxels .* more than 500,000,000: use a cell of at least 0.013 m",
         ),
+        (lambda: City(EMPTY).random_pairs(0, 1), "count must be at least 1, got 0"),
+        (lambda: City(EMPTY).random_pairs(1, 1, min_clearance=-1), "min_clearance must be .* at least 0, got -1"),
         (lambda: City(EMPTY).code_of((4, 0, 0)), r"index \(4, 0, 0\) lies outside of the map of \(4, 5, 6\) voxels"),
         (lambda: City(EMPTY).code_of((0, -1, 0)), r"index \(0, -1, 0\) lies outside of the map"),
         (lambda: City(EMPTY).code_of((1, 1)), r"index must have shape \(..., 3\), got \(2,\)"),
@@ -217,6 +273,17 @@ def test_a_city_keeps_what_it_was_given():
         (lambda: City(EMPTY).index_of([3, -1]), "code must be from 0 to 119, got -1"),
         (lambda: City(EMPTY).is_free((1, 1)), r"points must have shape \(..., 3\), got \(2,\)"),
         (lambda: City(EMPTY).cell_of(1.0), r"points must have shape \(..., 3\), got \(\)"),
+        (
+            lambda: City(EMPTY, cell=2.5).random_pairs(3, 0, apart=100),
+            "no 3 pairs found that are apart=100 m from each other and min_clearance=0 m from obstacles; "
+            "the map measures 10 × 12.5 × 15 m",
+        ),
+        (
+            lambda: City.from_buildings([BOX]).random_pairs(2, 0, apart=5, min_clearance=99),
+            "no 2 pairs found that are apart=5 m from each other and min_clearance=99 m",
+        ),
+        (lambda: City(~EMPTY).random_pairs(1, 0, apart=0), "no 1 pairs found that are apart=0 m"),
+        (lambda: City(EMPTY).random_pairs(1, 0, apart=np.nan), "no 1 pairs found that are apart=nan m"),
         (lambda: City(EMPTY).voxels_along([(1, 1, 1), (1, np.inf, 1)]), "points must be finite"),
         (lambda: City(EMPTY).voxels_along([(1, 1), (1, 2)]), r"points must .* shape \(N, 3\), got .*\(2, 2\)"),
     ],

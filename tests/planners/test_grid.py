@@ -16,7 +16,6 @@ from uavlab.planners.grid import (
     LENGTHS,
     MOVES,
     blocked_around,
-    blocked_voxels,
     checked_price,
     distance_left,
     endpoints,
@@ -98,9 +97,9 @@ def test_blocked_is_what_is_nearer_than_the_clearance_asked_for():
     occupied = np.zeros((9, 3, 3), bool)
     occupied[0] = True
     city = City(occupied, cell=2.0)  # clearances 1, 3, 5, … metres
-    assert np.array_equal(blocked_voxels(city, 0), occupied)
-    assert blocked_voxels(city, 3.0)[:, 1, 1].tolist() == [True] * 2 + [False] * 7
-    assert blocked_voxels(city, 3.1)[:, 1, 1].tolist() == [True] * 3 + [False] * 6
+    assert np.array_equal(city.blocked(0), occupied)
+    assert city.blocked(3.0)[:, 1, 1].tolist() == [True] * 2 + [False] * 7
+    assert city.blocked(3.1)[:, 1, 1].tolist() == [True] * 3 + [False] * 6
 
 
 def test_node_is_the_code_of_the_voxel_that_holds_the_point(table1):
@@ -161,9 +160,9 @@ SMALL = City(WALLED)
         (lambda: endpoints(SMALL, (1, 1, 1), (1, 1, 1)), "lie in the same voxel"),
         (lambda: endpoints(SMALL, (1, 1, 1), (1, 1, 7)), "goal .* lies outside of the map"),
         (lambda: endpoints(SMALL, (1, 1, 7), (1, 1, 1)), "start .* lies outside of the map"),
-        (lambda: blocked_voxels(SMALL, -1), "min_clearance must be a distance in metres, at least 0, got -1"),
-        (lambda: blocked_voxels(SMALL, np.nan), "min_clearance must be .* got nan"),
-        (lambda: blocked_voxels(SMALL, np.inf), "min_clearance must be .* got inf"),
+        (lambda: SMALL.blocked(-1), "min_clearance must be a distance in metres, at least 0, got -1"),
+        (lambda: SMALL.blocked(np.nan), "min_clearance must be .* got nan"),
+        (lambda: SMALL.blocked(np.inf), "min_clearance must be .* got inf"),
         (lambda: checked_price(SMALL, np.ones((4, 4))), r"price must have the city's shape \(4, 4, 4\), got \(4, 4\)"),
         (lambda: checked_price(SMALL, 1.0), r"price must have the city's shape \(4, 4, 4\), got \(1?,?\)"),
         (lambda: checked_price(SMALL, np.full((4, 4, 4), np.nan)), "price must be finite and at least 0 everywhere"),

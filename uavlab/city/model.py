@@ -141,6 +141,29 @@ class City:
         clearance *= self.cell
         return clearance
 
+    def blocked(self, min_clearance: float) -> np.ndarray:
+        """Where a UAV may not be: obstacles, and what is nearer to them than a distance.
+
+        Parameters
+        ----------
+        min_clearance : float
+            Least clearance allowed [m]; 0 leaves every free voxel open.
+
+        Returns
+        -------
+        (nx, ny, nz) bool array
+
+        Raises
+        ------
+        ValueError
+            If `min_clearance` is negative or not finite.
+        """
+        if not (np.isfinite(min_clearance) and min_clearance >= 0):
+            raise ValueError(f"min_clearance must be a distance in metres, at least 0, got {min_clearance!r}")
+        if min_clearance == 0:
+            return self.occupied
+        return self.clearance < min_clearance - 1e-9 * self.cell
+
     def cell_of(self, points: npt.ArrayLike) -> np.ndarray:
         """Indices (..., 3) of the voxels in which points (..., 3) [m] lie; out of range outside of the map or for NaN.
 
@@ -230,10 +253,12 @@ class City:
         Raises
         ------
         ValueError
-            If no such pairs are found in this city.
+            If no such pairs are found in this city, `count` is below 1, or `min_clearance` is negative.
         """
+        if count < 1:
+            raise ValueError(f"count must be at least 1, got {count!r}")
         rng = np.random.default_rng(rng)
-        allowed = np.flatnonzero(~self.occupied if min_clearance == 0 else self.clearance >= min_clearance)
+        allowed = np.flatnonzero(~self.blocked(min_clearance))
         pairs: list[np.ndarray] = []
         for _ in range(1000 * count if len(allowed) else 0):
             start, goal = self.center_of(self.index_of(allowed[rng.integers(len(allowed), size=2)]))

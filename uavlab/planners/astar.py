@@ -19,7 +19,6 @@ from uavlab.planners.grid import (
     LENGTHS,
     MOVES,
     blocked_around,
-    blocked_voxels,
     checked_price,
     distance_left,
     endpoints,
@@ -86,7 +85,7 @@ def astar(
     source, target = endpoints(city, start, goal, min_clearance)
     prices = None if price is None else checked_price(city, price)
     began = time.perf_counter()
-    blocked = blocked_voxels(city, min_clearance)
+    blocked = city.blocked(min_clearance)
     cheapest = 1.0 if prices is None or as_printed else float(prices.min())
     g, parent = np.empty(city.occupied.size), np.zeros(city.occupied.size, np.uint8)
     expanded, order = search(

@@ -68,15 +68,6 @@ def distance_left(heuristic, di, dj, dk):
     return 0.0
 
 
-def blocked_voxels(city: City, min_clearance: float) -> np.ndarray:
-    """Where the UAV may not be: obstacles, and what is nearer to them than `min_clearance` [m]; (nx, ny, nz) bool."""
-    if not (np.isfinite(min_clearance) and min_clearance >= 0):
-        raise ValueError(f"min_clearance must be a distance in metres, at least 0, got {min_clearance!r}")
-    if min_clearance == 0:
-        return city.occupied
-    return city.clearance < min_clearance - 1e-9 * city.cell
-
-
 def node_at(city: City, point: npt.ArrayLike, argument: str, min_clearance: float = 0.0) -> int:
     """The code of the voxel in which a start or a goal lies.
 
@@ -101,7 +92,7 @@ def node_at(city: City, point: npt.ArrayLike, argument: str, min_clearance: floa
             f"{argument} {show(position)} lies in {city.building_at(position)}; "
             f"{nearest_allowed(city, position, min_clearance)}"
         )
-    if blocked_voxels(city, min_clearance)[index]:
+    if city.blocked(min_clearance)[index]:
         raise ValueError(
             f"{argument} {show(position)} is {city.clearance[index]:.2f} m from the nearest obstacle, "
             f"min_clearance asks for {min_clearance:g} m; {nearest_allowed(city, position, min_clearance)}"
@@ -111,7 +102,7 @@ def node_at(city: City, point: npt.ArrayLike, argument: str, min_clearance: floa
 
 def nearest_allowed(city: City, position: np.ndarray, min_clearance: float) -> str:
     """Words for the centre nearest to a position where the UAV may be, looked for in boxes that grow."""
-    allowed = ~blocked_voxels(city, min_clearance)
+    allowed = ~city.blocked(min_clearance)
     index = city.cell_of(position)
     radius = 4
     while True:

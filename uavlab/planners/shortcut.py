@@ -14,7 +14,7 @@ import numpy.typing as npt
 from uavlab.city import City
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
-from uavlab.planners.grid import blocked_voxels, checked_price, show
+from uavlab.planners.grid import checked_price, show
 from uavlab.route import Route
 
 ROUNDING = 1e-9
@@ -49,7 +49,7 @@ def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, mi
         return route
     prices = None if price is None else checked_price(city, price)
     points = (route.points - city.origin) / city.cell
-    blocked = blocked_voxels(city, min_clearance)
+    blocked = city.blocked(min_clearance)
     best, before = cheapest_subset(points, blocked, prices)
     if not np.isfinite(best).all():
         leg = int(np.flatnonzero(~np.isfinite(best))[0])

@@ -1,4 +1,4 @@
-"""From the weather to forces: air density, rain, drag, wind along a course, and which weather grounds which load.
+"""From the weather to forces: the density of air, rain from above, wind from the side, and wind along a course.
 
 REPARE Eqs 1-5, each in the form that has the right unit and sign; `as_printed=True` gives the paper's. Forces are in
 newtons, speeds in m/s. Wind is where the air moves to: a vector (east, north) or (east, north, up). Only the
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab.vehicle import UAV
+from uavlab.weather import checks
 
 WATER_DENSITY = 1000.0
 """Of rain [kg/m³]."""
@@ -68,11 +69,10 @@ class Weather:
     radiation: float = 0.0
 
     def __post_init__(self) -> None:
-        check_air(self.temperature_c, self.humidity_percent, self.pressure_hpa)
+        checks.air(self.temperature_c, self.humidity_percent, self.pressure_hpa)
         for name in ("forecast_wind", "forecast_max_wind", "measured_wind", "rain_mm_per_h", "radiation"):
-            not_negative(name, getattr(self, name))
-        if not 0 <= self.wind_from_deg <= 360:
-            raise ValueError(f"wind_from_deg must be from 0 to 360 degrees, got {self.wind_from_deg!r}")
+            checks.not_negative(name, getattr(self, name))
+        checks.within("wind_from_deg", self.wind_from_deg, 0.0, 360.0, "degrees")
 
     @property
     def air_density(self) -> float:
@@ -124,7 +124,7 @@ def air_density(
     ValueError
         If a value is out of its range; a pressure in Pa is recognised.
     """
-    check_air(temperature_c, humidity_percent, pressure_hpa)
+    checks.air(temperature_c, humidity_percent, pressure_hpa)
     celsius = np.asarray(temperature_c, dtype=float)
     kelvin = celsius + 273.15
     vapour = np.asarray(humidity_percent) * 6.112 * np.exp(17.62 * celsius / (243.12 + celsius))  # [Pa]: % · hPa
@@ -166,11 +166,10 @@ def rain_force(
     ValueError
         If an argument is out of its range.
     """
-    not_negative("rain_mm_per_h", rain_mm_per_h)
-    positive("area", area)
-    positive("drop_speed", drop_speed)
-    if not 0 <= restitution <= 1:
-        raise ValueError(f"restitution must be from 0 (drops stick) to 1 (they bounce back), got {restitution!r}")
+    checks.not_negative("rain_mm_per_h", rain_mm_per_h)
+    checks.positive("area", area)
+    checks.positive("drop_speed", drop_speed)
+    checks.within("restitution", restitution, 0.0, 1.0, "(0: drops stick, 1: they bounce back)")
     pressure = WATER_DENSITY * np.asarray(rain_mm_per_h, dtype=float) / 3.6e6 * drop_speed
     return pressure * restitution if as_printed else pressure * area * (1.0 + restitution)
 
@@ -202,9 +201,8 @@ def lift_margin(
     ValueError
         If the rain's force is negative or the safety factor below 1.
     """
-    not_negative("rain", rain)
-    if not safety_factor >= 1:
-        raise ValueError(f"safety_factor must be at least 1, got {safety_factor!r}")
+    checks.not_negative("rain", rain)
+    checks.at_least_one("safety_factor", safety_factor)
     rain = np.asarray(rain, dtype=float)
     return uav.thrust - safety_factor * uav.weight - (rain if as_printed else safety_factor * rain)
 
@@ -245,9 +243,8 @@ def reference_wind(
         ("measured_mean", measured_mean),
         ("forecast_max", forecast_max),
     ):
-        not_negative(name, value)
-    if not gust_factor >= 1:
-        raise ValueError(f"gust_factor must be at least 1, got {gust_factor!r}")
+        checks.not_negative(name, value)
+    checks.at_least_one("gust_factor", gust_factor)
     mean = max(forecast_mean, measured_mean)
     return ReferenceWind(mean, mean if as_printed else max(forecast_max, gust_factor * mean))
 
@@ -275,17 +272,17 @@ def reachable_ground_speed(air_speed: float, wind: npt.ArrayLike, course: npt.Ar
     Raises
     ------
     ValueError
-        If the crosswind exceeds the air speed: no heading holds the course.
+        If the crosswind exceeds the air speed: no heading holds the course. If a vector is not finite or the course
+        has no length.
     """
-    positive("air_speed", air_speed)
-    wind, course = np.asarray(wind, dtype=float), np.asarray(course, dtype=float)
-    if not np.isfinite(wind).all():
-        raise ValueError(f"wind must be finite, got {wind.tolist()}")
+    checks.positive("air_speed", air_speed)
+    wind, course = checks.vectors(wind=wind, course=course)
     size = np.linalg.norm(course, axis=-1, keepdims=True)
-    if not (np.isfinite(size).all() and (size > 0).all()):
-        raise ValueError("course must be a direction: finite and not of length 0")
-    along = (wind * course / size).sum(axis=-1)
-    across = np.sqrt(np.maximum((wind**2).sum(axis=-1) - along**2, 0.0))
+    if (size == 0).any():
+        raise ValueError("course must be a direction, got one of length 0")
+    direction = course / size
+    along = (wind * direction).sum(axis=-1)
+    across = np.linalg.norm(wind - along[..., None] * direction, axis=-1)
     if (across > air_speed).any():
         raise ValueError(
             f"crosswind of {np.max(across):.1f} m/s is above air_speed {air_speed:g} m/s: no heading holds the course; "
@@ -327,42 +324,10 @@ def wind_drag(
     ValueError
         If an argument is not finite or out of its range.
     """
-    positive("drag_area", drag_area)
-    positive("air_density", air_density)
-    wind, ground_velocity = np.asarray(wind, dtype=float), np.asarray(ground_velocity, dtype=float)
-    for name, vector in (("wind", wind), ("ground_velocity", ground_velocity)):
-        if not np.isfinite(vector).all():
-            raise ValueError(f"{name} must be finite, got {vector.tolist()}")
+    checks.positive("drag_area", drag_area)
+    checks.positive("air_density", air_density)
+    wind, ground_velocity = checks.vectors(wind=wind, ground_velocity=ground_velocity)
     if as_printed:
         return 0.5 * air_density * drag_area * ground_velocity
     relative = wind - ground_velocity
     return 0.5 * air_density * drag_area * np.linalg.norm(relative, axis=-1, keepdims=True) * relative
-
-
-def check_air(temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_hpa: npt.ArrayLike) -> None:
-    within("temperature_c", temperature_c, -60.0, 60.0, "°C (kelvin? subtract 273.15)")
-    within("humidity_percent", humidity_percent, 0.0, 100.0, "%")
-    if (np.asarray(pressure_hpa) > 30_000).any():
-        raise ValueError(
-            f"pressure_hpa must be in hPa, got {np.max(np.asarray(pressure_hpa)):g}, which looks like Pa: divide by 100"
-        )
-    within("pressure_hpa", pressure_hpa, 300.0, 1100.0, "hPa")
-
-
-def within(name: str, value: npt.ArrayLike, low: float, high: float, unit: str) -> None:
-    values = np.asarray(value, dtype=float)
-    if not ((values >= low) & (values <= high)).all():
-        wrong = values[~((values >= low) & (values <= high))].flat[0]
-        raise ValueError(f"{name} must be from {low:g} to {high:g} {unit}, got {wrong:g}")
-
-
-def not_negative(name: str, value: npt.ArrayLike) -> None:
-    values = np.asarray(value, dtype=float)
-    if not (np.isfinite(values) & (values >= 0)).all():
-        raise ValueError(f"{name} must be finite and at least 0, got {np.min(values):g}")
-
-
-def positive(name: str, value: npt.ArrayLike) -> None:
-    values = np.asarray(value, dtype=float)
-    if not (np.isfinite(values) & (values > 0)).all():
-        raise ValueError(f"{name} must be finite and above 0, got {np.min(values):g}")
