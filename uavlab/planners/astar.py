@@ -24,7 +24,7 @@ from uavlab.planners.grid import (
     endpoints,
     show,
 )
-from uavlab.planners.heap import open_list, pop, push
+from uavlab.planners.heap import open_list, pop, push, room
 from uavlab.route import Route
 
 TIE_BREAK = 1 + 1e-9
@@ -47,7 +47,9 @@ def astar(
 ) -> Route:
     """Cheapest route over 26 neighbours, A* (REPARE 2.3.1, Eqs 8-13).
 
-    cost = Σ d·(price at both ends)/2 over the moves, d their lengths; without a price, the length.
+    cost = Σ d·(price at both ends)/2 over the moves, d their lengths; without a price, the length. It is the same both
+    ways, so the search begins where the price is higher: the estimate knows nothing of a dear goal, and would
+    have to look everywhere else before it pays for the last metres.
 
     Parameters
     ----------
@@ -87,15 +89,18 @@ def astar(
     began = time.perf_counter()
     blocked = city.blocked(min_clearance)
     cheapest = 1.0 if prices is None or as_printed else float(prices.min())
-    g, parent = np.empty(city.occupied.size), np.zeros(city.occupied.size, np.uint8)
+    g = room(np.empty, city.occupied.size, np.float64)
+    parent = room(np.zeros, city.occupied.size, np.uint8)
+    backwards = prices is not None and not as_printed and prices.flat[source] < prices.flat[target]
+    first, last = (target, source) if backwards else (source, target)
     expanded, order = search(
         blocked,
         prices,
         as_printed,
         HEURISTICS[heuristic],
         cheapest * TIE_BREAK,
-        source,
-        target,
+        first,
+        last,
         g,
         parent,
         open_list(city.occupied.size),
@@ -104,13 +109,13 @@ def astar(
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began, "heuristic": heuristic}
     if record:
         info["order"] = order[:expanded]
-    if parent[target] == UNSEEN:
+    if parent[last] == UNSEEN:
         reach = np.count_nonzero(parent)
         reason = f"no free way from {show(start)} to {show(goal)}: all {reach} voxels within reach were searched"
         return Route(np.empty((0, 3)), "A*", reached=False, reason=reason, cost=np.inf, info=info)
-    nodes = trace(parent, source, target, city.shape)
-    cost = float(g[target]) * city.cell
-    return Route(city.center_of(city.index_of(nodes)), "A*", cost=cost, info=info)
+    nodes = trace(parent, first, last, city.shape)
+    cost = float(g[last]) * city.cell
+    return Route(city.center_of(city.index_of(nodes[::-1] if backwards else nodes)), "A*", cost=cost, info=info)
 
 
 def penalty_zone(city: City, safe_distance: float, *, penalty: float, shape: str = "ball") -> np.ndarray:
@@ -173,6 +178,7 @@ def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent
     Returns how many nodes were expanded and, with `record`, which, in order; a node may be expanded again (Eq. 13).
     """
     ny, nz = blocked.shape[1], blocked.shape[2]
+    steps = (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
     goal_i, goal_j, goal_k = goal // (ny * nz), goal // nz % ny, goal % nz
     prices = price.ravel() if price is not None else None
     expanded = 0
@@ -191,18 +197,19 @@ def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent
         expanded += 1
         i, j, k = node // (ny * nz), node // nz % ny, node % nz
         around = blocked_around(blocked, i, j, k)
+        so_far = g[node]
         for move in range(26):
             if around & BOXES[move]:
                 continue
-            di, dj, dk = MOVES[move]
-            neighbour = node + (di * ny + dj) * nz + dk
+            neighbour = node + steps[move]
             cost = LENGTHS[move]
             if prices is not None and not as_printed:
                 cost *= 0.5 * (prices[node] + prices[neighbour])
-            cost += g[node]
+            cost += so_far
             if parent[neighbour] == UNSEEN or cost < g[neighbour] * ROUNDING:
                 g[neighbour] = cost
                 parent[neighbour] = move + 1
+                di, dj, dk = MOVES[move]
                 left = weight * distance_left(heuristic, goal_i - i - di, goal_j - j - dj, goal_k - k - dk)
                 factor = prices[neighbour] if prices is not None and as_printed else 1.0
                 push(waiting, neighbour, cost * factor + left)

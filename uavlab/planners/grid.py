@@ -45,6 +45,13 @@ def blocked_around(blocked, i, j, k):
     nx, ny, nz = blocked.shape
     word = 0
     bit = 1
+    if 0 < i < nx - 1 and 0 < j < ny - 1 and 0 < k < nz - 1:  # nearly always, and then three voxels at once
+        for a in range(i - 1, i + 2):
+            for b in range(j - 1, j + 2):
+                row = blocked[a, b]
+                word |= (row[k - 1] | row[k] << 1 | row[k + 1] << 2) * bit
+                bit <<= 3
+        return word
     for a in range(i - 1, i + 2):
         for b in range(j - 1, j + 2):
             for c in range(k - 1, k + 2):

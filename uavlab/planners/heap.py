@@ -6,11 +6,16 @@ route doesn't depend on the machine. Memory that is never written costs nothing:
 of a large map is cheap.
 """
 
+import mmap
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from uavlab.compiled import compiled
+
+LARGE = 32 << 20
+"""From this size on [bytes], huge pages cost more than they save."""
 
 
 class OpenList(NamedTuple):
@@ -25,8 +30,17 @@ class OpenList(NamedTuple):
 def open_list(nodes: int) -> OpenList:
     """An empty list with room for nodes 0 … nodes − 1."""
     return OpenList(
-        np.empty(nodes + 1, np.int32), np.empty(nodes + 1), np.zeros(nodes, np.int32), np.zeros(1, np.int64)
+        np.empty(nodes + 1, np.int32), np.empty(nodes + 1), room(np.zeros, nodes, np.int32), np.zeros(1, np.int64)
     )
+
+
+def room(make: Callable, count: int, dtype: type) -> np.ndarray:
+    """`np.empty` or `np.zeros`, that on a large map take up memory only around the voxels that a search visits.
+
+    NumPy asks for huge pages of two megabytes, and a route across the map passes through nearly all of them.
+    """
+    size = count * np.dtype(dtype).itemsize
+    return make(count, dtype) if size < LARGE else np.frombuffer(mmap.mmap(-1, size), dtype)
 
 
 @compiled
