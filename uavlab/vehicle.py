@@ -61,10 +61,10 @@ class UAV:
             value = getattr(self, item.name)
             if not np.isfinite(value) or value < 0 or (value == 0 and item.name != "payload"):
                 least = "at least 0" if item.name == "payload" else "above 0"
-                raise ValueError(f"{item.name} must be finite and {least}, got {value!r}")
+                raise ValueError(f"{item.name} must be finite and {least}, got {value:g}")
         if self.max_tilt >= np.pi / 2:
             raise ValueError(
-                f"max_tilt must be below π/2 in radians, got {self.max_tilt!r}; convert with numpy.radians"
+                f"max_tilt must be below π/2 in radians, got {self.max_tilt:g}; convert with numpy.radians"
             )
         if self.cruise_speed > self.top_speed:
             raise ValueError(f"cruise_speed {self.cruise_speed:g} m/s is above top_speed {self.top_speed:g} m/s")

@@ -1,5 +1,6 @@
-"""Weather: states of it, the forces they make, turbulence, and real records."""
+"""Weather: states of it, the forces they make, turbulence, the flight envelope, and real records."""
 
+from uavlab.weather.envelope import course_wind_limit, grounded_by, mean_wind_limit, wind_limit
 from uavlab.weather.forces import (
     ReferenceWind,
     Weather,
@@ -10,14 +11,25 @@ from uavlab.weather.forces import (
     reference_wind,
     wind_drag,
 )
+from uavlab.weather.records import greensboro_weather
+from uavlab.weather.turbulence import DrydenParameters, dryden_gusts, dryden_parameters, dryden_spectrum
 
 __all__ = [
+    "DrydenParameters",
     "ReferenceWind",
     "Weather",
     "air_density",
+    "course_wind_limit",
+    "dryden_gusts",
+    "dryden_parameters",
+    "dryden_spectrum",
+    "greensboro_weather",
+    "grounded_by",
     "lift_margin",
+    "mean_wind_limit",
     "rain_force",
     "reachable_ground_speed",
     "reference_wind",
     "wind_drag",
+    "wind_limit",
 ]

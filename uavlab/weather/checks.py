@@ -41,7 +41,7 @@ def vectors(**named: npt.ArrayLike) -> list[np.ndarray]:
 def air(temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_hpa: npt.ArrayLike) -> None:
     within("temperature_c", temperature_c, -60.0, 60.0, "°C (kelvin? subtract 273.15)")
     within("humidity_percent", humidity_percent, 0.0, 100.0, "%")
-    highest = np.max(np.asarray(pressure_hpa, dtype=float))
+    highest = np.asarray(pressure_hpa, dtype=float).max(initial=0.0)
     if highest > 30_000:
         raise ValueError(f"pressure_hpa must be in hPa, got {highest:g}, which looks like Pa: divide by 100")
     within("pressure_hpa", pressure_hpa, 300.0, 1100.0, "hPa")

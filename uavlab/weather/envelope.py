@@ -1,0 +1,170 @@
+"""The flight envelope: which wind and which rain ground which load.
+
+Three limits, in closed form. Rain and load eat the lift that safety asks for. What thrust is left sideways bounds the
+gust that a hovering UAV can hold. And the wind that it flies against bounds the speed over ground. A weather is inside
+the envelope when it stays below all three.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab.vehicle import UAV
+from uavlab.weather import checks
+from uavlab.weather.forces import GUST_FACTOR, STANDARD_AIR, Weather, lift_margin, rain_force
+
+SAFETY_FACTOR = 1.2
+"""δ of REPARE Eq. 2."""
+
+
+def wind_limit(
+    uav: UAV,
+    rain: npt.ArrayLike = 0.0,
+    *,
+    air_density: npt.ArrayLike = STANDARD_AIR,
+    safety_factor: float = SAFETY_FACTOR,
+) -> np.ndarray:
+    """Strongest gust that the UAV can just hold in hover.
+
+    V = √(2 R/(ρ C S)): its drag (REPARE Eq. 5) equals the horizontal reserve R(F_r) of the thrust.
+
+    Parameters
+    ----------
+    uav : UAV
+    rain : float or array
+        Force of the rain F_r [N], `rain_force`.
+    air_density : float or array
+        ρ [kg/m³], above 0.
+    safety_factor : float
+        δ of REPARE Eq. 2, at least 1.
+
+    Returns
+    -------
+    float or array
+        V [m/s]; 0 where the lift margin isn't positive.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    checks.positive("air_density", air_density)
+    safe = lift_margin(uav, rain, safety_factor=safety_factor) > 0
+    held = np.sqrt(2.0 * uav.horizontal_reserve(rain) / (np.asarray(air_density) * uav.drag_area))
+    return np.where(safe, held, 0.0)[()]
+
+
+def course_wind_limit(air_speed: float, ground_speed: npt.ArrayLike, wind_angle: npt.ArrayLike = np.pi) -> np.ndarray:
+    """Strongest wind in which the UAV can still fly a course at exactly this ground speed.
+
+    W = V_d cos θ + √(V_uav² − V_d² sin² θ): the wind triangle solved for its third side (law of cosines). A stronger
+    wind blows it off the course, stops it or, from behind, makes it faster than asked for.
+
+    Parameters
+    ----------
+    air_speed : float
+        Greatest speed V_uav through the air [m/s], above 0.
+    ground_speed : float or array
+        Speed to hold over ground V_d [m/s], from 0 to V_uav.
+    wind_angle : float or array
+        Angle θ between where the wind blows to and the course [rad]; π, the default and the worst, is a head wind.
+
+    Returns
+    -------
+    float or array
+        W [m/s].
+
+    Raises
+    ------
+    ValueError
+        If the ground speed can't be held in calm air, or an argument is out of its range.
+    """
+    checks.positive("air_speed", air_speed)
+    checks.within("ground_speed", ground_speed, 0.0, air_speed, "m/s, the air_speed")
+    speed, angle = np.asarray(ground_speed, dtype=float), np.asarray(wind_angle, dtype=float)
+    if not np.isfinite(angle).all():
+        raise ValueError(f"wind_angle must be finite, got {angle.tolist()}")
+    along, across = speed * np.cos(angle), speed * np.sin(angle)
+    return along + np.sqrt(air_speed**2 - across**2)
+
+
+def mean_wind_limit(
+    uav: UAV,
+    rain: npt.ArrayLike = 0.0,
+    *,
+    ground_speed: float = 0.0,
+    air_density: npt.ArrayLike = STANDARD_AIR,
+    safety_factor: float = SAFETY_FACTOR,
+    gust_factor: float = GUST_FACTOR,
+) -> np.ndarray:
+    """Strongest mean wind, from any side, in which the UAV can fly its mission.
+
+    The least of two: the gust that it holds over the gust factor, and the air speed that it reaches less the ground
+    speed that it needs. That air speed is the top speed, or less when the load leaves no thrust for it.
+
+    Parameters
+    ----------
+    uav : UAV
+    rain, air_density, safety_factor
+        As for `wind_limit`.
+    ground_speed : float
+        Speed to hold over ground V_d [m/s], at least 0; 0 for hovering.
+    gust_factor : float
+        Strongest gust over mean wind, at least 1.
+
+    Returns
+    -------
+    float or array
+        Mean wind [m/s]; 0 where the UAV is grounded in calm air, by its load, the rain or a ground speed out of reach.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    checks.not_negative("ground_speed", ground_speed)
+    checks.at_least_one("gust_factor", gust_factor)
+    gust = wind_limit(uav, rain, air_density=air_density, safety_factor=safety_factor)
+    against = np.maximum(np.minimum(gust, uav.top_speed) - ground_speed, 0.0)
+    return np.minimum(gust / gust_factor, against)
+
+
+def grounded_by(
+    uav: UAV, weather: Weather, *, ground_speed: float = 0.0, safety_factor: float = SAFETY_FACTOR
+) -> tuple[str, ...]:
+    """What keeps the UAV on the ground in this weather.
+
+    The reference wind (REPARE Eq. 3) gives the mean wind and the gust; the wind may come from any side.
+
+    Parameters
+    ----------
+    uav : UAV
+    weather : Weather
+    ground_speed : float
+        Speed to hold over ground V_d [m/s], at least 0.
+    safety_factor : float
+        δ of REPARE Eq. 2, at least 1.
+
+    Returns
+    -------
+    tuple of str
+        One sentence for each limit that is broken; empty when it may fly.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    checks.not_negative("ground_speed", ground_speed)
+    rain = rain_force(weather.rain_mm_per_h, uav.rain_area)
+    margin = lift_margin(uav, rain, safety_factor=safety_factor)
+    if margin <= 0:
+        return (f"lift: {-margin:.2f} N short of {safety_factor:g} times weight and rain",)
+    mean, gust = weather.reference_wind
+    held = float(wind_limit(uav, rain, air_density=weather.air_density, safety_factor=safety_factor))
+    speed = min(uav.top_speed, held)
+    reasons = []
+    if gust > held:
+        reasons.append(f"gusts: {gust:.1f} m/s, and the thrust left over holds {held:.1f} m/s")
+    if mean > speed - ground_speed:
+        reasons.append(f"head wind: {mean:.1f} m/s of {speed:.1f} m/s air speed leave less than {ground_speed:g} m/s")
+    return tuple(reasons)

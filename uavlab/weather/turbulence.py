@@ -1,0 +1,195 @@
+"""Gusts: Dryden turbulence after MIL-F-8785C at low altitude.
+
+The model freezes the turbulence: a field of gusts that doesn't change, through which the UAV flies with its air speed
+V. What is long in space (scale lengths) so becomes slow in time, and the gusts along, across and vertical each have a
+spectrum that a filter of first or second order makes from white noise. Here the filters are run exactly: the samples
+have the model's own covariance at any time step, from the first one on.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import expm
+from scipy.signal import lfilter
+
+from uavlab.weather import checks
+
+FOOT = 0.3048
+"""[m]"""
+
+LOWEST, HIGHEST = 10 * FOOT, 1000 * FOOT
+"""Altitudes between which the low-altitude model holds [m]."""
+
+DRIFT = np.array([[-1.0, 0.0], [1.0, -1.0]])
+"""Two lags in a row, in units of the time scale L/V: white noise enters the first, the first feeds the second."""
+
+OUTPUT = np.array([[np.sqrt(2.0), 0.0], [np.sqrt(3.0), 1.0 - np.sqrt(3.0)], [np.sqrt(3.0), 1.0 - np.sqrt(3.0)]])
+"""Gust along, across and vertical from the two lags, in units of its standard deviation."""
+
+STATIONARY = np.array([[0.5, 0.25], [0.25, 0.25]])
+"""Covariance of the two lags when they have run for ever."""
+
+
+class DrydenParameters(NamedTuple):
+    """Scale lengths [m] and standard deviations [m/s] of the gusts along, across and vertical, each (3,)."""
+
+    scale_lengths: np.ndarray
+    deviations: np.ndarray
+
+
+def dryden_parameters(altitude: float, wind_at_6m: float) -> DrydenParameters:
+    """How long and how strong gusts are near the ground, MIL-F-8785C 3.7.3.
+
+    With the altitude h in feet: L_w = h, L_u = L_v = h/(0.177 + 0.000823 h)^1.2, σ_w = 0.1 W20,
+    σ_u = σ_v = σ_w/(0.177 + 0.000823 h)^0.4.
+
+    Parameters
+    ----------
+    altitude : float
+        Height above the ground h [m], 3.048 to 304.8 (10 to 1000 ft).
+    wind_at_6m : float
+        Mean wind W20 at 20 ft (6.1 m) above the ground [m/s], at least 0; 7.7 is light, 15 moderate, 23 severe.
+
+    Returns
+    -------
+    DrydenParameters
+
+    Raises
+    ------
+    ValueError
+        If the altitude is out of its range or the wind negative.
+    """
+    checks.within("altitude", altitude, LOWEST, HIGHEST, "m, the low-altitude range of MIL-F-8785C")
+    checks.not_negative("wind_at_6m", wind_at_6m)
+    feet = altitude / FOOT
+    shape = 0.177 + 0.000823 * feet
+    horizontal = altitude / shape**1.2
+    return DrydenParameters(
+        np.array([horizontal, horizontal, altitude]),
+        0.1 * wind_at_6m * np.array([shape**-0.4, shape**-0.4, 1.0]),
+    )
+
+
+def dryden_spectrum(omega: npt.ArrayLike, air_speed: float, altitude: float, wind_at_6m: float) -> np.ndarray:
+    """Spectral density of the gusts that a UAV meets, MIL-F-8785C 3.7.1.2.
+
+    Along 2σ²τ/π / (1 + (τω)²), across and vertical σ²τ/π · (1 + 3(τω)²)/(1 + (τω)²)², with the time scale τ = L/V.
+    One-sided: the integral over ω from 0 to infinity is σ².
+
+    Parameters
+    ----------
+    omega : (...) array
+        Angular frequency ω [rad/s], at least 0.
+    air_speed : float
+        Speed V through the air [m/s], above 0.
+    altitude, wind_at_6m : float
+        As for `dryden_parameters`.
+
+    Returns
+    -------
+    (..., 3) array
+        Density along, across and vertical [m²/s² per rad/s].
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range; air speed 0: see `dryden_gusts`.
+    """
+    checks.not_negative("omega", omega)
+    scale, deviations = time_scales(air_speed, altitude, wind_at_6m)
+    square = (scale * np.asarray(omega, dtype=float)[..., None]) ** 2
+    along = 2.0 / (1.0 + square[..., :1])
+    others = (1.0 + 3.0 * square[..., 1:]) / (1.0 + square[..., 1:]) ** 2
+    return deviations**2 * scale / np.pi * np.concatenate([along, others], axis=-1)
+
+
+def dryden_gusts(
+    duration: float,
+    time_step: float,
+    air_speed: float,
+    altitude: float,
+    wind_at_6m: float,
+    rng: np.random.Generator | int | None = None,
+) -> np.ndarray:
+    """Gusts that a UAV meets, to be added to the mean wind.
+
+    Two lags per axis with the time scale τ = L/V, driven by white noise and read out so that the spectrum is that of
+    `dryden_spectrum`. They start in their stationary distribution and are stepped exactly (`lag_step`), so that no
+    time step is too long and none falsifies the variance.
+
+    Parameters
+    ----------
+    duration : float
+        How long [s], above 0.
+    time_step : float
+        Between samples [s], above 0 and at most the duration; 0.01 to 0.1 to see every gust.
+    air_speed : float
+        Speed V through the air [m/s], above 0. When the UAV hovers, the wind carries the gusts past it: V is then the
+        mean wind.
+    altitude : float
+        Height above the ground [m], 3.048 to 304.8.
+    wind_at_6m : float
+        Mean wind at 20 ft (6.1 m) above the ground [m/s], at least 0.
+    rng : numpy.random.Generator or int, optional
+        Where the noise comes from; a seed makes it repeatable.
+
+    Returns
+    -------
+    (N, 3) array
+        Gusts along, across and vertical [m/s]; N = duration / time_step, rounded, the first at time 0.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    checks.positive("duration", duration)
+    checks.positive("time_step", time_step)
+    if time_step > duration:
+        raise ValueError(f"time_step {time_step:g} s is longer than the duration of {duration:g} s")
+    scales, deviations = time_scales(air_speed, altitude, wind_at_6m)
+    noise = np.random.default_rng(rng).standard_normal((3, round(duration / time_step), 2))
+    gusts = [
+        two_lags(normal, time_step / scale) @ output
+        for normal, scale, output in zip(noise, scales, OUTPUT, strict=True)
+    ]
+    return deviations * np.stack(gusts, axis=1)
+
+
+def time_scales(air_speed: float, altitude: float, wind_at_6m: float) -> tuple[np.ndarray, np.ndarray]:
+    """Time scales L/V [s] and standard deviations [m/s] along, across and vertical."""
+    if air_speed == 0:
+        raise ValueError(
+            "air_speed is 0: frozen turbulence doesn't move past a UAV that rests in the air; "
+            "in hover give the mean wind, which carries it past"
+        )
+    checks.positive("air_speed", air_speed)
+    lengths, deviations = dryden_parameters(altitude, wind_at_6m)
+    return lengths / air_speed, deviations
+
+
+def two_lags(normal: np.ndarray, step: float) -> np.ndarray:
+    """States (N, 2) of the two lags, made from standard normal numbers (N, 2), a step (in time scales) apart."""
+    transition, covariance = lag_step(step)
+    driven = normal @ np.linalg.cholesky(covariance).T
+    driven[0] = np.linalg.cholesky(STATIONARY) @ normal[0]
+    recursion = [1.0, -transition[0, 0]]  # the same for both: two equal lags
+    first = lfilter([1.0], recursion, driven[:, 0])
+    driven[1:, 1] += transition[1, 0] * first[:-1]
+    return np.stack([first, lfilter([1.0], recursion, driven[:, 1])], axis=1)
+
+
+def lag_step(step: float) -> tuple[np.ndarray, np.ndarray]:
+    """How the two lags go on over a step (in time scales): transition matrix, and covariance of the noise that enters.
+
+    Van Loan (1978): one matrix exponential has both. Its blocks grow with the step, and their product loses digits; a
+    long step takes the covariance from what doesn't change, that of the stationary state.
+    """
+    transition = expm(DRIFT * step)
+    if step > 1.0:
+        return transition, STATIONARY - transition @ STATIONARY @ transition.T
+    driving = np.diag([1.0, 0.0])
+    blocks = expm(np.block([[-DRIFT, driving], [np.zeros((2, 2)), DRIFT.T]]) * step)
+    covariance = transition @ blocks[:2, 2:]
+    return transition, (covariance + covariance.T) / 2
