@@ -8,8 +8,8 @@ the envelope when it stays below all three.
 import numpy as np
 import numpy.typing as npt
 
+from uavlab import checks
 from uavlab.vehicle import UAV
-from uavlab.weather import checks
 from uavlab.weather.forces import GUST_FACTOR, STANDARD_AIR, Weather, lift_margin, rain_force
 
 SAFETY_FACTOR = 1.2

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from uavlab import checks
 from uavlab.vehicle import UAV
-from uavlab.weather import checks
 
 WATER_DENSITY = 1000.0
 """Of rain [kg/m³]."""

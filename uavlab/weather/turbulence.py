@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy.linalg import expm
 from scipy.signal import lfilter
 
-from uavlab.weather import checks
+from uavlab import checks
 
 FOOT = 0.3048
 """[m]"""

@@ -1,4 +1,4 @@
-"""Checks of arguments that several functions of the weather share: each names the argument, its value and the range."""
+"""Checks of arguments that many functions share: each names the argument, its value and the range."""
 
 import numpy as np
 import numpy.typing as npt
@@ -45,6 +45,34 @@ def air(temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_
     if highest > 30_000:
         raise ValueError(f"pressure_hpa must be in hPa, got {highest:g}, which looks like Pa: divide by 100")
     within("pressure_hpa", pressure_hpa, 300.0, 1100.0, "hPa")
+
+
+def finite(name: str, value: npt.ArrayLike) -> None:
+    values = np.asarray(value, dtype=float)
+    refuse(values, np.isfinite(values), f"{name} must be finite")
+
+
+def share(name: str, value: npt.ArrayLike) -> np.ndarray:
+    values = np.asarray(value, dtype=float)
+    refuse(values, (values > 0) & (values < 1), f"{name} must be between 0 and 1, without the ends")
+    return values
+
+
+def samples(values: npt.ArrayLike, *, least: int, axes: int = 1) -> np.ndarray:
+    """Samples (N,), or (N, axes), as floats: finite, enough of them, and not all equal on any axis."""
+    values = np.asarray(values, dtype=float)
+    if values.ndim != min(axes, 2) or (axes > 1 and values.shape[1] != axes):
+        wanted = "(N,)" if axes == 1 else f"(N, {axes})"
+        raise ValueError(f"samples must have shape {wanted}, got {values.shape}")
+    bad = np.flatnonzero(~np.isfinite(values.reshape(len(values), -1)).all(axis=1))
+    if len(bad):
+        rows = ", ".join(map(str, bad[:5])) + (", …" if len(bad) > 5 else "")
+        raise ValueError(f"samples must be finite: {len(bad)} of {len(values)} are not, at {rows}; drop or repair them")
+    if len(values) < least:
+        raise ValueError(f"samples must be at least {least}, got {len(values)}")
+    if (np.ptp(values, axis=0) == 0).any():
+        raise ValueError("samples must differ: all are equal, so σ would be 0")
+    return values
 
 
 def refuse(values: np.ndarray, right: np.ndarray, demand: str) -> None:

@@ -1,0 +1,139 @@
+"""Offsets on two axes at once: the joint density of REPARE Eq. 17, and the magnitude it gives."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.special import ndtr
+from scipy.stats import rayleigh, rice
+
+from uavlab import checks
+from uavlab.offsets.pauta import PAUTA_COVERAGE, pauta_radius
+
+
+@dataclass(frozen=True)
+class JointOffset:
+    """Gaussian offset on two signed axes, REPARE Eq. 17.
+
+    f(x, y) = exp(−r²/2) / (2π σ₁ σ₂ √(1 − ρ²)),  r² = (u² − 2ρuv + v²)/(1 − ρ²),  u = (x − μ₁)/σ₁,  v = (y − μ₂)/σ₂
+
+    The paper calls f a probability; it is a density [1/m²], and may be above 1. Its ξ_hor, an offset parallel to the
+    ground, must be one signed axis (across the route, say): the magnitude of two is not Gaussian, see `magnitude`.
+
+    Attributes
+    ----------
+    mean : (2,)
+        μ₁, μ₂ [m].
+    sigma : (2,)
+        σ₁, σ₂ [m], above 0.
+    correlation : float
+        ρ, between −1 and 1.
+
+    Raises
+    ------
+    ValueError
+        If there are not two of each, one is not finite, a σ is not above 0, or ρ is −1, 1 or beyond.
+    """
+
+    mean: tuple[float, float]
+    sigma: tuple[float, float]
+    correlation: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("mean", "sigma"):
+            pair = np.asarray(getattr(self, name), dtype=float)
+            if pair.shape != (2,):
+                raise ValueError(f"{name} must be two numbers, one for each axis, got shape {pair.shape}")
+            object.__setattr__(self, name, tuple(pair.tolist()))
+        checks.finite("mean", self.mean)
+        checks.positive("sigma", self.sigma)
+        if not -1 < self.correlation < 1:
+            raise ValueError(f"correlation must be between -1 and 1, without the ends, got {self.correlation!r}")
+
+    @classmethod
+    def fit(cls, samples: npt.ArrayLike) -> "JointOffset":
+        """The model with the means, standard deviations (n − 1) and correlation of samples (N, 2) [m], N at least 3."""
+        values = checks.samples(samples, least=3, axes=2)
+        mean, covariance = values.mean(axis=0), np.cov(values.T)
+        sigma = np.sqrt(np.diag(covariance))
+        return cls(tuple(mean), tuple(sigma), float(covariance[0, 1] / sigma.prod()))
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Covariance matrix (2, 2) [m²]."""
+        one, two = self.sigma
+        return np.array([[one**2, self.correlation * one * two], [self.correlation * one * two, two**2]])
+
+    def density(self, points: npt.ArrayLike) -> np.ndarray:
+        """f [1/m²] at points (..., 2) [m]."""
+        height = 2 * np.pi * self.sigma[0] * self.sigma[1] * np.sqrt(1 - self.correlation**2)
+        return np.exp(-0.5 * self.radius_in_sigma(points) ** 2) / height
+
+    def radius_in_sigma(self, points: npt.ArrayLike) -> np.ndarray:
+        """r of points (..., 2) [m]: which ellipse around the mean they lie on (the Mahalanobis distance)."""
+        u, v = np.moveaxis((np.asarray(points, dtype=float) - self.mean) / self.sigma, -1, 0)
+        return np.sqrt((u**2 - 2 * self.correlation * u * v + v**2) / (1 - self.correlation**2))
+
+    def ellipse(self, coverage: float = PAUTA_COVERAGE, count: int = 181) -> np.ndarray:
+        """Closed outline (count, 2) [m] of the ellipse of equal density that holds `coverage`."""
+        angle = np.linspace(0, 2 * np.pi, count)
+        circle = pauta_radius(2, coverage) * np.column_stack([np.cos(angle), np.sin(angle)])
+        return self.mean + circle @ np.linalg.cholesky(self.covariance).T
+
+    def within_circle(self, radius: float) -> float:
+        """Probability of an offset of at most `radius` [m] from the route, in whichever direction.
+
+        Exact, by integrating the Gaussian across the circle along the principal axes.
+        """
+        checks.not_negative("radius", radius)
+        variance, axes = np.linalg.eigh(self.covariance)
+        (mean, other_mean), (sigma, other_sigma) = self.mean @ axes, np.sqrt(variance)
+
+        def slice_at(x: float) -> float:
+            half = np.sqrt(max(radius**2 - x**2, 0.0))
+            share = ndtr((half - other_mean) / other_sigma) - ndtr((-half - other_mean) / other_sigma)
+            return float(share * np.exp(-0.5 * ((x - mean) / sigma) ** 2) / (np.sqrt(2 * np.pi) * sigma))
+
+        low, high = max(-radius, mean - 12 * sigma), min(radius, mean + 12 * sigma)
+        return float(quad(slice_at, low, high, epsabs=1e-13, epsrel=1e-12, limit=200)[0]) if low < high else 0.0
+
+    def circle(self, coverage: float = PAUTA_COVERAGE) -> float:
+        """Radius [m] of the circle around the route that holds `coverage`: the ξ of Eq. 7 for all directions."""
+        share = checks.share("coverage", coverage)
+        widest = np.sqrt(np.linalg.eigvalsh(self.covariance)[-1])
+        around_ellipse = np.hypot(*self.mean) + 1.01 * pauta_radius(2, coverage) * widest
+        return float(brentq(lambda radius: self.within_circle(radius) - share, 0.0, around_ellipse, xtol=1e-12))
+
+    def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
+        """Independent offsets (count, 2) [m]."""
+        return np.random.default_rng(rng).multivariate_normal(self.mean, self.covariance, count, method="cholesky")
+
+
+def magnitude(sigma: float, mean_length: float = 0.0) -> Any:
+    """Law of the distance from the route in the plane, when both axes have the same σ.
+
+    Rayleigh: mean √(π/2) σ = 1.2533 σ, 99.73 % within 3.439 σ. With a mean offset: Rice.
+
+    Parameters
+    ----------
+    sigma : float
+        σ of each axis [m], above 0.
+    mean_length : float
+        Length of the mean offset [m], at least 0.
+
+    Returns
+    -------
+    scipy.stats distribution
+        With `pdf`, `cdf`, `ppf`, `mean` and so on.
+
+    Raises
+    ------
+    ValueError
+        If σ is not above 0 or the mean offset negative.
+    """
+    checks.positive("sigma", sigma)
+    checks.not_negative("mean_length", mean_length)
+    return rayleigh(scale=sigma) if mean_length == 0 else rice(mean_length / sigma, scale=sigma)

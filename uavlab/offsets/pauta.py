@@ -1,0 +1,172 @@
+"""The Pauta criterion: the radius that holds nearly all of what chance does, gross errors, and the distance to keep."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import erf, gammainc, gammaincinv
+
+from uavlab import checks
+
+PAUTA_COVERAGE = float(erf(3.0 / np.sqrt(2.0)))
+"""Probability that a Gaussian offset on one axis lies within 3σ: 0.9973."""
+
+
+def coverage(radius_in_sigma: npt.ArrayLike, dimensions: int) -> np.ndarray:
+    """Probability that a Gaussian offset on several equal, independent axes lies within a radius of kσ.
+
+    P(|x| ≤ kσ) = P(χ²_d ≤ k²); 1 − exp(−k²/2) in the plane.
+
+    Parameters
+    ----------
+    radius_in_sigma : float or array
+        k, at least 0.
+    dimensions : int
+        d, 1 to 3.
+
+    Returns
+    -------
+    float or array
+        The shape of k; for k = 3: 0.99730, 0.98889, 0.97071.
+
+    Raises
+    ------
+    ValueError
+        If k is negative or not finite, or d not 1, 2 or 3.
+    """
+    checks.not_negative("radius_in_sigma", radius_in_sigma)
+    return gammainc(checked_dimensions(dimensions) / 2, 0.5 * np.asarray(radius_in_sigma, dtype=float) ** 2)
+
+
+def pauta_radius(dimensions: int, coverage: float = PAUTA_COVERAGE) -> float:
+    """How many σ a radius must have to hold a share of the offsets, in 1, 2 or 3 dimensions.
+
+    k = √(χ²_d quantile of the coverage): the inverse of `coverage`. 3, 3.439 and 3.763 for the Pauta criterion.
+
+    Parameters
+    ----------
+    dimensions : int
+        d, 1 to 3.
+    coverage : float
+        Between 0 and 1; that of 3σ on one axis by default.
+
+    Returns
+    -------
+    float
+        k.
+
+    Raises
+    ------
+    ValueError
+        If d is not 1, 2 or 3, or the coverage not between 0 and 1.
+    """
+    share = checks.share("coverage", coverage)
+    return float(np.sqrt(2 * gammaincinv(checked_dimensions(dimensions) / 2, share)))
+
+
+class Filtered(NamedTuple):
+    """What `pauta_filter` left: which samples it kept, their mean and σ [m], and in how many rounds it removed some."""
+
+    kept: np.ndarray
+    mean: float
+    sigma: float
+    rounds: int
+
+
+def pauta_filter(samples: npt.ArrayLike, radius_in_sigma: float = 3.0) -> Filtered:
+    """Remove gross errors: samples farther than 3σ from the mean, again and again until none is left.
+
+    A gross error widens the σ it is judged by, so one round isn't enough. Nor is any number of rounds for few samples:
+    no sample can be farther from the mean than (n − 1)/√n times σ, which is below 3 for n < 11. Of good Gaussian
+    samples 0.27 % go as well, and more in later rounds; σ comes out 1 to 2 % too small.
+
+    Parameters
+    ----------
+    samples : (N,) array
+        Offsets on one axis [m].
+    radius_in_sigma : float
+        At least 1; 3 for the Pauta criterion.
+
+    Returns
+    -------
+    Filtered
+        Mask of the kept samples (N,), their mean and standard deviation (n − 1), and the rounds that removed some.
+
+    Raises
+    ------
+    ValueError
+        If a sample is not finite, all are equal, or there are too few for any to be removed.
+    """
+    checks.at_least_one("radius_in_sigma", radius_in_sigma)
+    values = checks.samples(samples, least=2)
+    farthest = (len(values) - 1) / np.sqrt(len(values))
+    if farthest <= radius_in_sigma:
+        least = int((radius_in_sigma + np.sqrt(radius_in_sigma**2 + 4)) ** 2 / 4) + 1
+        raise ValueError(
+            f"samples must be at least {least} for {radius_in_sigma:g}σ, got {len(values)}: among so few none can be "
+            f"farther than (n − 1)/√n = {farthest:.2f}σ from the mean, whatever its value"
+        )
+    kept, rounds = np.ones(len(values), dtype=bool), 0
+    while True:
+        mean, sigma = float(values[kept].mean()), float(values[kept].std(ddof=1))
+        good = kept & (np.abs(values - mean) <= radius_in_sigma * sigma)
+        if good.sum() == kept.sum():
+            return Filtered(kept, mean, sigma, rounds)
+        kept, rounds = good, rounds + 1
+
+
+def minimum_safe_distance(
+    offset: npt.ArrayLike,
+    uav_diameter: float,
+    *,
+    mean_offset: npt.ArrayLike | None = None,
+    normal: npt.ArrayLike | None = None,
+) -> np.ndarray:
+    """Least distance to keep from obstacles, REPARE Eq. 7.
+
+    D_min = ξ + D_uav / 2: where gusts may push the centre, plus half the body. With a mean offset μ and the direction
+    n away from the wall it widens towards the wind: D_min(x) = ξ + D_uav / 2 + max(0, −μ·n).
+
+    Parameters
+    ----------
+    offset : float or array
+        Route offset ξ = kσ to be survived [m], at least 0; `pauta_radius` gives k.
+    uav_diameter : float
+        Body diameter D_uav [m], above 0.
+    mean_offset : (..., D) array, optional
+        μ, where the steady wind holds the UAV, from its route [m]; together with `normal`.
+    normal : (..., D) array, optional
+        n, away from the nearest wall, any length but 0; the gradient of the clearance.
+
+    Returns
+    -------
+    float or array
+        D_min [m]; the shape of `offset`, broadcast with that of μ·n.
+
+    Raises
+    ------
+    ValueError
+        If an argument is negative or not finite, a normal has no direction, or only one of μ and n is given.
+    """
+    checks.not_negative("offset", offset)
+    checks.positive("uav_diameter", uav_diameter)
+    distance = np.asarray(offset, dtype=float) + uav_diameter / 2
+    if mean_offset is None and normal is None:
+        return distance[()]
+    if mean_offset is None or normal is None:
+        raise ValueError("mean_offset and normal belong together: give both or neither")
+    mean, away = np.asarray(mean_offset, dtype=float), np.asarray(normal, dtype=float)
+    checks.finite("mean_offset", mean)
+    checks.finite("normal", away)
+    length = np.linalg.norm(away, axis=-1)
+    if not (length > 0).all():
+        raise ValueError(
+            f"normal must be a direction away from the wall, {int((length == 0).sum())} of {length.size} have length 0"
+        )
+    return distance + np.maximum(0.0, -(mean * away).sum(axis=-1) / length)
+
+
+def checked_dimensions(dimensions: int) -> int:
+    if dimensions not in (1, 2, 3):
+        raise ValueError(f"dimensions must be 1, 2 or 3, got {dimensions!r}")
+    return dimensions
