@@ -10,8 +10,8 @@
 # # Start here: a route through a city in five minutes
 #
 # A small UAV stands in the notch of an L-shaped building, 30 m above the ground. It has to get to a point above another
-# building. Which way is short, and which way is still safe when a gust pushes it a few metres to the side? This
-# notebook goes once from the city to a route that you can turn in your hands. The other notebooks open each step up.
+# building, and there is wind. How far will gusts push it, which way is short, and which way is still safe? This
+# notebook goes once from the weather to a route that you can turn in your hands. The other notebooks open each step up.
 #
 # *Run All* (in the menu **Run**) executes everything and brings the 3D scenes to life. Until then a still picture
 # stands in their place.
@@ -21,13 +21,55 @@ import numpy as np
 
 from uavlab import plot, scene
 from uavlab.city import table1_city
+from uavlab.offsets import minimum_safe_distance
 from uavlab.planners import astar, shortcut
+from uavlab.prediction import OffsetPredictor, make_dataset
+from uavlab.vehicle import LIGHT_QUADROTOR
+from uavlab.weather import Weather, rain_force, wind_drag
 
 # %% [markdown]
+# ## The weather
+#
+# A light breeze from the south-west and a little rain, on a quadrotor of 1.5 kg that carries 250 g. Gusts are stronger
+# than the mean wind, and their force grows with the square of the speed. The rain hardly counts.
+
+# %%
+# NBVAL_CHECK_OUTPUT
+uav = LIGHT_QUADROTOR.loaded(0.25)
+weather = Weather(12, 80, 985, forecast_wind=3, wind_from_deg=240, rain_mm_per_h=2, radiation=150)
+gust = weather.reference_wind.gust * weather.wind_direction  # where the air moves to, east and north
+drag = wind_drag(gust, (0, 0), uav.drag_area, air_density=weather.air_density)
+print(f"gusts of {np.linalg.norm(gust):.1f} m/s push with {np.linalg.norm(drag):.2f} N")
+print(f"rain of {weather.rain_mm_per_h} mm/h presses with {rain_force(2, uav.rain_area):.4f} N")
+print(f"left against them: {uav.horizontal_reserve():.1f} N of {uav.thrust:.0f} N of thrust")
+
+# %% [markdown]
+# Where this comes from, and which weather grounds which load: [01 wind and rain](01_wind_and_rain.ipynb).
+#
+# ## How far will it be pushed?
+#
+# REPARE, one of the three papers that this course works through, learns it from flights: from the weather to the
+# offset in whole metres, rounded up. There are no such flights to download, so ours are simulated, in a year of real
+# hourly weather. What XGBoost predicts for today goes into the paper's Eq. 7: the distance to keep is the offset plus
+# half the body.
+
+# %%
+# NBVAL_CHECK_OUTPUT
+year = make_dataset("greensboro", rng=1, uav=uav)
+predictor = OffsetPredictor().fit(year.features[year.train], year.offsets[year.train])
+offset = predictor.predict_offset(weather)[0]
+safe_distance = minimum_safe_distance(offset, uav.diameter)
+print(f"offset to be survived: {offset:.0f} m; distance to keep from walls: {safe_distance:.1f} m")
+assert safe_distance == 3.5  # REPARE Table 4: light load, mild disturbance
+
+# %% [markdown]
+# How far "3σ" reaches, and when it doesn't: [02 the Pauta criterion](02_pauta.ipynb). How good such a prediction can
+# be at best: [03 predicting the disturbance](03_predicting_the_disturbance.ipynb).
+#
 # ## The city
 #
-# REPARE, one of the three papers that this course works through, tests its planner in a city of five buildings
-# (its Table 1). A planner sees it as a million cubes of one metre, each free or occupied.
+# REPARE tests its planner in a city of five buildings (its Table 1). A planner sees it as a million cubes of one metre,
+# each free or occupied.
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -65,13 +107,11 @@ plot.profile(city, shortest)
 #
 # ## A way that keeps its distance
 #
-# REPARE's Eq. 7 asks for a distance that covers how far gusts push the UAV, plus half its body; for a light load in
-# mild wind its Table 4 has 3.5 m. Voxels that are nearer to a wall are now closed. And since nothing forces a UAV to
-# turn by 45° or 90° from voxel to voxel, `shortcut` then joins by straight lines what can see each other.
+# The weather asks for 3.5 m. Voxels that are nearer to a wall are now closed. And since nothing forces a UAV to turn by
+# 45° or 90° from voxel to voxel, `shortcut` then joins by straight lines what can see each other.
 
 # %%
 # NBVAL_CHECK_OUTPUT
-safe_distance = 3.5
 safe = astar(city, start, goal, min_clearance=safe_distance)
 straight = shortcut(safe, city, min_clearance=safe_distance)
 for route in (shortest, safe, straight):
@@ -96,9 +136,9 @@ scene.show(city, straight, shortest, safe_distance=safe_distance)
 # %% [markdown]
 # ## Your turn
 #
-# Move the goal, or ask for more distance. What happens when the distance is larger than half the gap between two
-# buildings? And when the goal itself is too near to a wall? A question that has no answer is refused, with what would
-# do instead:
+# Raise the wind to 5 m/s, or the load to 1 kg. Move the goal. What happens when the distance is larger than half the
+# gap between two buildings? And when the goal itself is too near to a wall? A question that has no answer is refused,
+# with what would do instead:
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -112,10 +152,13 @@ except ValueError as error:
 #
 # | notebook | question |
 # |---|---|
+# | [01 wind and rain](01_wind_and_rain.ipynb) | How hard do wind and rain push, and which weather grounds which load? |
+# | [02 the Pauta criterion](02_pauta.ipynb) | How far is "far enough", on one axis, in space, over a flight? |
+# | [03 prediction](03_predicting_the_disturbance.ipynb) | How well can a model foresee it, on which side should it err? |
 # | [04 cities](04_cities.ipynb) | What does a planner see of a city, and what does the resolution cost? |
 # | [06 A*](06_astar.ipynb) | Why is A* exact, which estimate is best, and what is wrong with REPARE's Eq. 13? |
 #
-# Each ends with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is right, and
+# All but this one end with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is right, and
 # if not, what to think about. The routes of this notebook as a file for other programs: `straight.to_csv("route.csv")`.
 
 # %%

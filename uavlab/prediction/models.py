@@ -1,0 +1,223 @@
+"""Models that guess the class of an offset from the weather: the three of REPARE, and better ones.
+
+A model is a function of a `Dataset` that returns its prediction for the rows of the test: class numbers, or for Ridge
+values between them. What makes the better ones better is no tuning but what they are told: that classes have an order,
+that the offset itself is known, that its scatter is log-normal, and that too low is worse than too high.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab.prediction.data import Dataset, Setting, bayes_accuracy, class_probabilities, make_dataset, offset_class
+from uavlab.prediction.requirements import require
+
+if TYPE_CHECKING:
+    import pandas
+
+TREES: Mapping[str, Any] = {"n_estimators": 150, "max_depth": 4, "learning_rate": 0.08, "subsample": 0.8}
+"""Of the better models: smaller steps than XGBoost's own 0.3, on 80 % of the rows each."""
+
+FIXED: Mapping[str, Any] = {"tree_method": "hist", "n_jobs": 1, "random_state": 0}
+"""One thread and one seed: the same answer on each run."""
+
+FOLDS = 4
+"""Parts for cross-validation: the scatter of a model is measured where it hasn't learned."""
+
+
+def ridge(data: Dataset) -> np.ndarray:
+    """A plane through the class numbers, as in REPARE: not rounded, so that its R² is that of the plane."""
+    model = require("sklearn.linear_model").Ridge()
+    return model.fit(data.features[data.train], data.classes[data.train]).predict(data.features[data.test])
+
+
+def gaussian_nb(data: Dataset) -> np.ndarray:
+    """Gaussian naive Bayes, as in REPARE: within a class the features are normal and independent."""
+    model = require("sklearn.naive_bayes").GaussianNB()
+    return model.fit(data.features[data.train], data.classes[data.train]).predict(data.features[data.test])
+
+
+def xgb_classifier(data: Dataset) -> np.ndarray:
+    """XGBoost's classifier with its defaults, as in REPARE: classes without an order."""
+    model = require("xgboost").XGBClassifier(**FIXED)
+    known, labels = np.unique(data.classes[data.train], return_inverse=True)
+    return known[model.fit(data.features[data.train], labels).predict(data.features[data.test])]
+
+
+def ordinal(data: Dataset) -> np.ndarray:
+    """One classifier for each boundary, P(class > k): it uses the order; the most probable class wins."""
+    above = []
+    for k in range(1, data.class_count):
+        model = require("xgboost").XGBClassifier(**TREES, **FIXED)
+        label = (data.classes[data.train] > k).astype(int)
+        if label.min() == label.max():  # no or every sample lies above: nothing to learn
+            above.append(np.full(data.test.sum(), float(label[0])))
+        else:
+            model.fit(data.features[data.train], label)
+            above.append(model.predict_proba(data.features[data.test])[:, 1])
+    decreasing = np.minimum.accumulate(above, axis=0)
+    return 1 + np.argmax(-np.diff(decreasing, axis=0, prepend=1.0, append=0.0), axis=0)
+
+
+def log_offset(data: Dataset) -> np.ndarray:
+    """Regression on the logarithm of the offset, then the most probable class of a log-normal about it."""
+    model, residuals = fit_log_offset(data.features[data.train], data.offsets[data.train])
+    middle = model.predict(data.features[data.test])
+    return 1 + class_probabilities(middle, float(residuals.std()), data.class_count).argmax(axis=1)
+
+
+def quantile_class(data: Dataset, quantile: float = 0.95) -> np.ndarray:
+    """The class that the offset doesn't exceed with 95 %: the same regression, plus that quantile of its residuals."""
+    model, residuals = fit_log_offset(data.features[data.train], data.offsets[data.train])
+    high = model.predict(data.features[data.test]) + np.quantile(residuals, quantile)
+    return offset_class(np.exp(high), data.class_count)
+
+
+def quantile_regression(data: Dataset, quantile: float = 0.95) -> np.ndarray:
+    """The same class by XGBoost's quantile regression: no shape of the scatter assumed, and none measured."""
+    model = require("xgboost").XGBRegressor(objective="reg:quantileerror", quantile_alpha=quantile, **TREES, **FIXED)
+    model.fit(data.features[data.train], np.log(data.offsets[data.train]))
+    return offset_class(np.exp(model.predict(data.features[data.test]).astype(float)), data.class_count)
+
+
+Model = Callable[[Dataset], np.ndarray]
+
+PAPER_MODELS: Mapping[str, Model] = {"Ridge": ridge, "GaussianNB": gaussian_nb, "XGBClassifier": xgb_classifier}
+MODELS: Mapping[str, Model] = {
+    **PAPER_MODELS,
+    "ordinal": ordinal,
+    "log-offset": log_offset,
+    "95 % quantile": quantile_class,
+    "95 % quantile regression": quantile_regression,
+}
+
+
+def fit_log_offset(features: "pandas.DataFrame", offsets: npt.ArrayLike) -> tuple[Any, np.ndarray]:
+    """An XGBoost regression of ln ξ, and its residuals on rows that it hadn't learned from.
+
+    Parameters
+    ----------
+    features : pandas.DataFrame
+        N rows.
+    offsets : (N,) array
+        ξ [m], above 0.
+
+    Returns
+    -------
+    xgboost.XGBRegressor, (N,) array
+        The residuals ln ξ − prediction are from cross-validation in 4 parts, so a little larger than the noise.
+    """
+    selection = require("sklearn.model_selection")
+    model = require("xgboost").XGBRegressor(**TREES, **FIXED)
+    target = np.log(np.asarray(offsets, dtype=float))
+    parts = selection.KFold(FOLDS, shuffle=True, random_state=0)
+    residuals = target - selection.cross_val_predict(model, features, target, cv=parts)
+    return model.fit(features, target), residuals
+
+
+def score(data: Dataset, predicted: npt.ArrayLike) -> dict[str, float]:
+    """How good a prediction for the rows of the test is.
+
+    Parameters
+    ----------
+    data : Dataset
+    predicted : array
+        For each row of the test, a class or a value between classes; it is rounded for all but R².
+
+    Returns
+    -------
+    dict
+        `accuracy`: share of right classes. `r2`: 1 − squared errors / variance, of the class numbers.
+        `under_prediction`: share of classes too low, the dangerous side. `excess`: mean of how many classes too high,
+        0 where it isn't. `bayes_gap`: what the accuracy that is to be expected of these classes lacks to the Bayes
+        limit; it is computed from the generator's probabilities, so it is free of the luck of the draw.
+
+    Raises
+    ------
+    ValueError
+        If there are not as many predictions as rows.
+    """
+    predicted = np.asarray(predicted, dtype=float)
+    true = data.classes[data.test]
+    if predicted.shape != true.shape:
+        raise ValueError(f"predicted must have shape {true.shape}, one for each row of the test, got {predicted.shape}")
+    classes = np.clip(np.rint(predicted), 1, data.class_count).astype(int)
+    known = data.log_median[data.test], data.noise, data.class_count
+    expected = class_probabilities(*known)[np.arange(len(true)), classes - 1].mean()
+    return {
+        "accuracy": float((classes == true).mean()),
+        "r2": float(1 - ((predicted - true) ** 2).sum() / ((true - true.mean()) ** 2).sum()),
+        "under_prediction": float((classes < true).mean()),
+        "excess": float(np.maximum(classes - true, 0).mean()),
+        "bayes_gap": bayes_accuracy(*known) - float(expected),
+    }
+
+
+def compare_models(
+    seeds: Iterable[int] = range(8),
+    *,
+    setting: str | Setting = "paper",
+    models: Mapping[str, Model] = MODELS,
+    n_jobs: int = 1,
+    progress: bool = False,
+    each: bool = False,
+) -> "pandas.DataFrame":
+    """Train every model on one dataset per seed, and compare.
+
+    Parameters
+    ----------
+    seeds : iterable of int
+        One dataset each, `make_dataset(setting, seed)`; at least 2, for an interval.
+    setting : str or Setting
+        As for `make_dataset`.
+    models : mapping of name to function
+        Each takes a `Dataset` and returns the prediction for the rows of its test.
+    n_jobs : int
+        Processes; the answer doesn't depend on it.
+    progress : bool
+        Show a bar (with tqdm).
+    each : bool
+        One row per model and seed instead of their means.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row per model. For each measure of `score`, and `bayes`, the limit on the same rows, there are three columns:
+        its mean over the seeds, and with `_low` and `_high` the ends of the mean's 95 % interval (Student's t).
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than 2 seeds, or the setting is unknown.
+    """
+    pandas, joblib = require("pandas"), require("joblib")
+    seeds = list(seeds)
+    if len(set(seeds)) < 2:
+        raise ValueError(f"seeds must be at least 2 different ones, got {seeds}")
+    jobs: Iterable[int] = require("tqdm").tqdm(seeds, unit="dataset") if progress else seeds
+    tables = joblib.Parallel(n_jobs=n_jobs)(joblib.delayed(scores_of_seed)(seed, setting, models) for seed in jobs)
+    table = pandas.DataFrame([row for rows in tables for row in rows])
+    if each:
+        return table
+    measures = [name for name in table.columns if name not in ("model", "seed")]
+    groups = table.groupby("model", sort=False)[measures]
+    mean, half = groups.mean(), groups.sem() * student_t(len(seeds))
+    columns: dict[str, Any] = {}
+    for name in measures:
+        columns |= {name: mean[name], f"{name}_low": mean[name] - half[name], f"{name}_high": mean[name] + half[name]}
+    return pandas.DataFrame(columns)
+
+
+def scores_of_seed(seed: int, setting: str | Setting, models: Mapping[str, Model]) -> list[dict[str, Any]]:
+    data = make_dataset(setting, seed)
+    limit = bayes_accuracy(data.log_median[data.test], data.noise, data.class_count)
+    return [{"model": name, "seed": seed, **score(data, model(data)), "bayes": limit} for name, model in models.items()]
+
+
+def student_t(count: int, coverage: float = 0.95) -> float:
+    """Half-width of the interval of a mean of `count` values, in its standard errors."""
+    from scipy.stats import t
+
+    return float(t.ppf(0.5 + coverage / 2, count - 1))
