@@ -154,12 +154,13 @@ except ValueError as error:
 # |---|---|
 # | [01 wind and rain](01_wind_and_rain.ipynb) | How hard do wind and rain push, and which weather grounds which load? |
 # | [02 the Pauta criterion](02_pauta.ipynb) | How far is "far enough", on one axis, in space, over a flight? |
-# | [03 prediction](03_predicting_the_disturbance.ipynb) | How well can a model foresee it, on which side should it err? |
+# | [03 prediction](03_predicting_the_disturbance.ipynb) | How well can a model foresee it? |
 # | [04 cities](04_cities.ipynb) | What does a planner see of a city, and what does the resolution cost? |
 # | [06 A*](06_astar.ipynb) | Why is A* exact, which estimate is best, and what is wrong with REPARE's Eq. 13? |
 #
-# All but this one end with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is right, and
-# if not, what to think about. The routes of this notebook as a file for other programs: `straight.to_csv("route.csv")`.
+# All but this one end with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is
+# right, and if not, what to think about. The route of this notebook as a file for other programs:
+# `straight.to_csv("route.csv")`.
 
 # %%
 # NBVAL_CHECK_OUTPUT
