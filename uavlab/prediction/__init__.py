@@ -1,17 +1,13 @@
 """From the weather to the class of the offset: data, the models of REPARE and better ones, the Bayes limit."""
 
-from uavlab.prediction.data import (
+from uavlab.prediction.data import SETTINGS, Dataset, Setting, make_dataset, synthetic_weather
+from uavlab.prediction.generator import (
     FEATURES,
-    SETTINGS,
-    Dataset,
-    Setting,
     bayes_accuracy,
     class_probabilities,
-    make_dataset,
     median_offsets,
     offset_class,
     simulate_offsets,
-    synthetic_weather,
 )
 from uavlab.prediction.models import MODELS, PAPER_MODELS, compare_models, score
 from uavlab.prediction.predictor import OffsetPredictor

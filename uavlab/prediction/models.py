@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from uavlab.prediction.data import Dataset, Setting, bayes_accuracy, class_probabilities, make_dataset, offset_class
+from uavlab.prediction.data import Dataset, Setting, make_dataset
+from uavlab.prediction.generator import bayes_accuracy, class_probabilities, offset_class
 from uavlab.prediction.requirements import require
 
 if TYPE_CHECKING:

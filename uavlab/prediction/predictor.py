@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
-from uavlab.prediction.data import (
+from uavlab.prediction.generator import (
     FEATURES,
     checked_class_count,
     checked_columns,
