@@ -1,48 +1,21 @@
-"""Exercises of chapter 3: the solutions pass; a blank and typical mistakes fail, each with a hint of its own."""
+"""Exercises of chapter 03: other ways to the answer pass; typical mistakes fail, each with a hint of its own."""
 
 import math
-from pathlib import Path
 
-import jupytext
 import numpy as np
 import pytest
 from scipy.stats import norm
+from solved import solutions_of
 
 from uavlab.exercises import check
 from uavlab.prediction import class_probabilities, compare_models, make_dataset, score
 
-SOLUTIONS = Path(__file__).parents[2] / "notebooks/src/solutions/03_predicting_the_disturbance_exercises.py"
-
 NUMBERS = [("03.1", "under_prediction"), ("03.2", "most_probable_class"), ("03.3", "right_answers")]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def solutions():
-    """The functions that the solutions define."""
-    namespace = {}
-    for cell in jupytext.read(SOLUTIONS).cells:
-        if cell.cell_type == "code":
-            exec(cell.source, namespace)
-    return namespace
-
-
-@pytest.mark.parametrize(("number", "name"), NUMBERS)
-def test_solution_is_right(solutions, number, name):
-    verdict = check(number, solutions[name])
-    assert verdict, verdict
-    assert repr(verdict) == f"{number}: right"
-
-
-def blank(*arguments):
-    raise NotImplementedError
-
-
-@pytest.mark.parametrize(("number", "name"), NUMBERS)
-@pytest.mark.parametrize("answer", [None, ..., blank])
-def test_blank_is_no_answer(number, name, answer):
-    verdict = check(number, answer)
-    assert not verdict
-    assert "no answer yet" in verdict.hint
+    return solutions_of("03")
 
 
 @pytest.mark.parametrize(("number", "name"), NUMBERS)

@@ -1,46 +1,19 @@
-"""Exercises of chapter 6: the solutions pass; a blank and typical mistakes fail, each with a hint of its own."""
+"""Exercises of chapter 06: other ways to the answer pass; typical mistakes fail, each with a hint of its own."""
 
 import heapq
 import itertools
 import math
-from pathlib import Path
 
-import jupytext
 import numpy as np
 import pytest
+from solved import solutions_of
 
 from uavlab.exercises import check
 
-SOLUTIONS = Path(__file__).parents[2] / "notebooks/src/solutions/06_astar_exercises.py"
 
-
-@pytest.fixture(scope="module")
+@pytest.fixture
 def solutions():
-    """The functions that the solutions define."""
-    namespace = {}
-    for cell in jupytext.read(SOLUTIONS).cells:
-        if cell.cell_type == "code":
-            exec(cell.source, namespace)
-    return namespace
-
-
-@pytest.mark.parametrize(("number", "name"), [("06.1", "octile"), ("06.2", "legal"), ("06.3", "repaired")])
-def test_solution_is_right(solutions, number, name):
-    verdict = check(number, solutions[name])
-    assert verdict, verdict
-    assert repr(verdict) == f"{number}: right"
-
-
-def blank(*arguments):
-    raise NotImplementedError
-
-
-@pytest.mark.parametrize("number", ["06.1", "06.2", "06.3"])
-@pytest.mark.parametrize("answer", [None, ..., blank])
-def test_blank_is_no_answer(number, answer):
-    verdict = check(number, answer)
-    assert not verdict
-    assert "no answer yet" in verdict.hint
+    return solutions_of("06")
 
 
 def octile_of_largest_first(dx, dy, dz):

@@ -1,15 +1,33 @@
-"""The checker itself; each chapter's exercises have a test of their own."""
+"""The checker, and what holds for every exercise; each chapter's typical mistakes have a test of their own."""
 
 import pytest
+from solved import EXERCISES, SOURCES, solutions_of
 
 from uavlab import exercises
 
 
-def test_blank_answers_are_no_answers():
-    for blank in (None, ...):
-        verdict = exercises.check("06.1", blank)
-        assert not verdict
-        assert "no answer yet" in repr(verdict)
+def blank(*_):
+    raise NotImplementedError
+
+
+def test_every_chapter_with_solutions_has_exercises():
+    assert {number[:2] for number in EXERCISES} == {source.stem[:2] for source in SOURCES}
+    assert len(EXERCISES) == 3 * len(SOURCES)
+
+
+@pytest.mark.parametrize(("number", "name"), EXERCISES.items())
+def test_solution_is_right(number, name):
+    verdict = exercises.check(number, solutions_of(number[:2])[name])
+    assert verdict, verdict
+    assert repr(verdict) == f"{number}: right"
+
+
+@pytest.mark.parametrize("number", EXERCISES)
+@pytest.mark.parametrize("answer", [None, ..., blank])
+def test_blank_is_no_answer(number, answer):
+    verdict = exercises.check(number, answer)
+    assert not verdict
+    assert "no answer yet" in repr(verdict)
 
 
 def test_unknown_exercise():
