@@ -9,7 +9,7 @@
 # %% [markdown]
 # # Start here: a route through a city in five minutes
 #
-# A small UAV stands in the notch of an L-shaped building, 30 m above the ground. It has to get to a point above another
+# A small UAV hovers in the notch of an L-shaped building, 30 m above the ground. It has to get to a point above another
 # building, and there is wind. How far will gusts push it, which way is short, and which way is still safe? This
 # notebook goes once from the weather to a route that you can turn in your hands. The other notebooks open each step up.
 #
@@ -88,7 +88,7 @@ scene.show(city)
 # ## The shortest way
 #
 # A* (read: A star) finds the shortest route from voxel to voxel. Start and goal are in metres: x to the east, y to the
-# north, z up.
+# north, z up. The route begins and ends in the centres of their voxels, at most half a metre off on each axis.
 
 # %%
 # NBVAL_CHECK_OUTPUT

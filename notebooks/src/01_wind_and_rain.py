@@ -13,9 +13,8 @@
 # route is planned, that has to be answered in newtons: how hard does rain press, how hard does wind push, how much
 # thrust is left against both? REPARE (Sensors 2022, 22, 2151,
 # [doi:10.3390/s22062151](https://doi.org/10.3390/s22062151), section 2.2.1, Eqs 1–5) gives five formulas for it. We
-# derive each from momentum, see what its printed form gets wrong, and end with the *flight
-# envelope*: a map of the loads and weathers in which it may fly. ("Eq. 3" is an equation of this notebook, "REPARE
-# Eq. 2" one of the paper's.)
+# derive each, see what its printed form gets wrong, and end with the *flight envelope*: a map of the loads and
+# weathers in which it may fly. ("Eq. 3" is an equation of this notebook, "REPARE Eq. 2" one of the paper's.)
 
 # %%
 import matplotlib.pyplot as plt
@@ -29,8 +28,8 @@ from uavlab.weather import Weather, air_density, greensboro_weather, reachable_g
 BLUE, RED, GREEN, ORANGE = "#0072B2", "#D55E00", "#009E73", "#E69F00"
 
 # %% [markdown]
-# REPARE says nothing about its vehicle. Ours is a light quadrotor whose numbers are usual for the class, and agree
-# with the safe distances of REPARE Table 4 (notebook 02):
+# REPARE speaks of a civil light quadrotor and gives no figures for it. Ours has figures that are usual for the class,
+# and with them the safe distances of REPARE Table 4 come out ([notebook 03](03_predicting_the_disturbance.ipynb)):
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -73,13 +72,17 @@ plot.finished(figure)
 thin, thick = density.min(), density.max()
 wet = air_density(30, 100, 1013.25) / air_density(30, 0, 1013.25)
 print(f"Greensboro: {thin:.2f} to {thick:.2f} kg/m³, a factor of {thick / thin:.2f}")
+kelvin = year.temperature_c.to_numpy() + 273.15
+warmth = kelvin[density.argmin()] / kelvin[density.argmax()]
+print(f"of which the temperature alone makes {warmth:.2f}")
 print(f"at 30 °C saturated air is {1 - wet:.1%} lighter than dry air")
 assert round(thick / thin, 2) == 1.24
 assert round(1 - wet, 3) == 0.016
+assert round(warmth, 2) == 1.20
 
 # %% [markdown]
-# The same wind pushes 24 % harder on the densest hour than on the thinnest. Temperature does nearly all of it. Below we
-# take 1.225 kg/m³, dry air at 15 °C, where nothing else is said.
+# The same wind pushes 24 % harder on the densest hour than on the thinnest. Temperature does most of it,
+# 20 %. Below we take 1.225 kg/m³, dry air at 15 °C, where nothing else is said.
 #
 # ## Rain: REPARE Eq. 1
 #
@@ -100,9 +103,10 @@ print(f"{cloudburst:.3f} N, the weight of {1000 * cloudburst / GRAVITY:.1f} g")
 assert np.isclose(cloudburst, 0.025)
 
 # %% [markdown]
-# Two and a half grams! The paper prints $F_r = H \rho V (1 - \eta)/t$, with the share $\eta$ of momentum that the
-# drops lose. Two things are wrong in it. The area is missing, so the result is a pressure, in pascals. And $1 - \eta$
-# runs the wrong way: drops that lose all they have ($\eta = 1$) should push, and the formula gives nothing.
+# Two and a half grams! The paper prints $F_r = P S = H \rho V (1 - \eta)/t$, with the momentum loss $\eta$ of the
+# drops, which we take for a share. Two things are wrong in it. With $H$ as a depth, as rain is measured, the area is
+# missing on the right, so the result is a pressure, in pascals. And $1 - \eta$ runs the wrong way: drops that lose all
+# they have ($\eta = 1$) should push, and the formula gives nothing.
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -114,8 +118,8 @@ for e, what in ((0.0, "stick"), (0.2, "splash"), (1.0, "bounce back")):
 assert rain_force(100, uav.rain_area, as_printed=True) == 0
 
 # %% [markdown]
-# REPARE's second note under Table 3 grounds the UAV when heavy rain presses harder than the load that it can carry.
-# How hard would it have to rain for that?
+# REPARE's second note under Table 3 grounds the UAV when heavy rain presses harder than the largest load that it can
+# carry. How hard would it have to rain for that, or only for a load of 250 g?
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -140,7 +144,7 @@ axes.grid(alpha=0.3)
 plot.finished(figure)
 
 # %% [markdown]
-# Ten metres an hour for the lightest load. A hundred times a cloudburst: that doesn't exist. Rain is dangerous to a
+# Ten metres an hour for the lightest of them. A hundred times a cloudburst: that doesn't exist. Rain is dangerous to a
 # small UAV by other ways: water in motors and electronics, drops on the camera, and what *stays*. A film of one
 # millimetre on 0.1 m² weighs 100 g, forty times what the cloudburst presses.
 #
@@ -209,7 +213,7 @@ axes.plot(speeds, printed, "--", color=RED, label="as printed, REPARE Eq. 5 (no 
 axes.plot([10, 10], [0.3, 3.0], "o", color="black", markersize=4)
 axes.annotate("3.0", (10, 3.0), (9, 3.4))
 axes.annotate("0.3", (10, 0.3), (10, 0.6))
-axes.set(xlabel="speed through the air [m/s]", ylabel="force [N]", xlim=(0, 20), ylim=(0, 12.5))
+axes.set(xlabel="speed through still air [m/s]", ylabel="force [N]", xlim=(0, 20), ylim=(0, 12.5))
 axes.legend(fontsize=8)
 axes.grid(alpha=0.3)
 plot.finished(figure)
@@ -221,8 +225,9 @@ plot.finished(figure)
 # ## The wind to reckon with: REPARE Eq. 3
 #
 # The forecast has a mean wind $V_{\mu F}$ and a strongest one $V_{\text{Max}F}$, the UAV measures a mean $V_{\mu S}$.
-# The paper takes the larger mean, and never uses the strongest wind that it introduced. But a gust is what pushes into
-# a wall. So we keep the mean and add the gust, at least $g = 1.75$ times the mean, as is usual between buildings:
+# The paper takes the larger mean and leaves the strongest wind that it introduced unused (its Eq. 4 has a
+# $V_\text{wMax}$, which it doesn't define). But a gust is what pushes into a wall. So we keep the mean and add the
+# gust, at least $g = 1.75$ times the mean, as is usual between buildings:
 #
 # $$ V_\text{res} = \max(V_{\mu F}, V_{\mu S}), \qquad
 #    V_\text{gust} = \max(V_{\text{Max}F},\ g\, V_\text{res}). \tag{5} $$
@@ -567,12 +572,12 @@ assert round(needed, 2) == 1.14
 # %% [markdown]
 # | REPARE | says | we find |
 # |---|---|---|
-# | Eq. 1 | rain presses with $H \rho V (1 - \eta)/t$ | a pressure, 0 where drops stick; 0.025 N on 0.1 m² in 100 mm/h |
+# | Eq. 1 | rain presses with $H \rho V (1 - \eta)/t$ | for a depth $H$ a pressure, 0 where drops stick; 0.025 N |
 # | Eq. 2 | $F_{z,\max} > \delta\,(G_\text{uav} + G_s) + F_r$ | rain belongs into the bracket; 0.005 N of difference |
 # | Eq. 3 | the larger of two mean winds | leaves out the gust, which pushes 3.06 times as hard |
 # | Eq. 4 | $\vec V_d \le \vec V_\text{wMax} + \vec V_\text{uav}$ | Eq. 6; 9 m/s of head wind leave 9 m/s, not 27 |
 # | Eq. 5 | drag is $\frac12 C \rho S V_d$ | no force, and blind to wind: 0.3 for 3.0 N at 10 m/s |
-# | Table 3, note 2 | heavy rain can weigh more than the load | not by its force: that takes 9.8 m of rain an hour |
+# | Table 3, note 2 | heavy rain can exceed the largest load | not its force: even 0.25 kg takes 9.8 m of rain an hour |
 # | Table 4 | heavy load flies in mild wind | our 1 kg does with $\delta < 1.14$, not with 1.2 |
 #
 # The paper gives no vehicle, so the figures in newtons are those of ours. What doesn't depend on it: which formula has

@@ -72,9 +72,9 @@ plot.finished(figure)
 # %% [markdown]
 # ## Several risk levels, and the distance to keep
 #
-# In more wind $\sigma$ is larger, and the same share needs more room. REPARE Fig. 3 draws densities of several risk
-# levels, each with its *safety discriminant points*, here $\mu \pm 3\sigma$. The distance to keep from obstacles is
-# REPARE Eq. 7: the offset $\xi$ to be survived plus half the body,
+# In more wind, or with a heavier load, $\sigma$ is larger, and the same share needs more room. REPARE Fig. 3 draws
+# densities of several risk levels, each with its *safety discriminant points*, here $\mu \pm 3\sigma$. The distance
+# to keep from obstacles is REPARE Eq. 7: the offset $\xi$ to be survived plus half the body,
 #
 # $$ D_\text{min} \ge \xi + \tfrac12 D_\text{uav}, \qquad \xi = k\,\sigma, \tag{3} $$
 #
@@ -83,10 +83,10 @@ plot.finished(figure)
 
 # %%
 # NBVAL_CHECK_OUTPUT
-levels = {"mild": 1.0, "moderate": 4 / 3, "heavy": 5 / 3}
+levels = {"light load, mild wind": 1.0, "heavy load, mild wind": 4 / 3, "light load, heavy wind": 5 / 3}
 for name, sigma in levels.items():
     distance = offsets.minimum_safe_distance(3 * sigma, uav_diameter=1.0)
-    print(f"{name:<9} σ = {sigma:.2f} m: ξ = 3σ = {3 * sigma:.1f} m, D_min = {distance:.1f} m")
+    print(f"{name:<22} σ = {sigma:.2f} m: ξ = 3σ = {3 * sigma:.1f} m, D_min = {distance:.1f} m")
 distances = offsets.minimum_safe_distance(3 * np.array(list(levels.values())), uav_diameter=1.0)
 assert np.allclose(distances, [3.5, 4.5, 5.5])
 
@@ -310,7 +310,7 @@ pushes = tilted.sample(200_000, 17)
 print(
     f"3σ ellipse holds {np.mean(tilted.radius_in_sigma(pushes) <= 3):.2%} of the drawn, Eq. 5: {1 - math.exp(-4.5):.2%}"
 )
-print(f"99.73 % lie within {tilted.circle():.2f} m of the route; Eq. 7's 3σ of the worse axis is 3.00 m")
+print(f"99.73 % lie within {tilted.circle():.2f} m of the route; Eq. 3 with the worse axis gives ξ = 3.00 m")
 refitted = JointOffset.fit(pushes)
 print(
     f"fitted from the samples: σ = {refitted.sigma[0]:.2f}, {refitted.sigma[1]:.2f} m, ρ = {refitted.correlation:.2f}"
@@ -374,9 +374,9 @@ plot.finished(figure)
 # ## A force that isn't Gaussian
 #
 # REPARE assumes a Gaussian force. But drag grows with the square of the wind ([01 wind and
-# rain](01_wind_and_rain.ipynb), REPARE Eq. 5). If the wind's speed is Gaussian, with a standard deviation of $I$ times
-# its mean (the *turbulence intensity*, about 0.3 in a city), the force is skewed: a gust of $+I$ adds more than a lull
-# of $-I$ takes away. In units of the mean wind's force,
+# rain](01_wind_and_rain.ipynb), where REPARE Eq. 5 has lost the square). If the wind's speed is Gaussian, with a
+# standard deviation of $I$ times its mean (the *turbulence intensity*, about 0.3 in a city), the force is skewed: a
+# gust of $+I$ adds more than a lull of $-I$ takes away. In units of the mean wind's force,
 #
 # $$ Q = |V|\,V, \quad V = 1 + I z, \qquad x = \mu + \sigma\,\frac{Q - \operatorname{E}Q}{\sqrt{\operatorname{Var}Q}},
 # \tag{9} $$
@@ -490,7 +490,7 @@ assert predicted > 11 * gaussian.beyond(3.0)
 #
 # It needs an offset that has a speed. A popular model of gusts, the Ornstein–Uhlenbeck process, has none: it is so
 # rough that it crosses a level infinitely often. Taken for the *offset*, with the same $\sigma$ and correlation time
-# ($2/\omega_n$), it collides about three times as often, and the finer one looks, the oftener:
+# ($2/\omega_n$), it collides two to three times as often, and the finer one looks, the oftener:
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -626,7 +626,7 @@ assert (round(float(predicted), 3), round(float(measured), 3)) == (0.015, 0.014)
 # | Figs 2, 3 | $3\sigma$ holds 99.7 % | on one axis at one moment, 99.73 % |
 # | | | in the plane 98.89 %, in space 97.07 % |
 # | Eq. 7 | $D_\text{min} \ge \xi + D_\text{uav}/2$ | right; $\xi = k\sigma$ with $k$ for what is asked |
-# | | | $\sigma$ of 1, 4/3, 5/3 m give its 3.5, 4.5, 5.5 m |
+# | | | $\sigma$ of 1, 4/3, 5/3 m give Table 4's 3.5, 4.5, 5.5 m |
 # | Eq. 17 | the probability of two offsets | a density: 4 per m² for $\sigma$ = 0.2 m |
 # | | | right for signed axes; a magnitude is Rayleigh, mean $1.2533\sigma$ |
 # | Fig. 18 | the safety domain meets the criterion | with $3\sigma$ it is one eighth too small: $3.44\sigma$ |

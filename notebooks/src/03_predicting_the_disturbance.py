@@ -82,29 +82,45 @@ plot.finished(figure)
 # $$ I = I_m + I_c\,\frac{Q / 1000\ \mathrm{W/m^2}}{1 + V / V_c}, \tag{1} $$
 # $$ V_g = V\, h\,[1 + a \cos 2(\theta - \theta_s)]\,(1 + g\, I). \tag{2} $$
 #
-# The gust's drag (REPARE Eq. 5, [01 wind and rain](01_wind_and_rain.ipynb)) works against the thrust that the weight
-# leaves sideways. The offset is what the strongest gust reaches; $8.5\ \mathrm m$ is the constant with which Table 4's
-# distances come out:
+# The gust's drag (Eq. 4 of [01 wind and rain](01_wind_and_rain.ipynb)) works against the thrust that the weight $G$
+# leaves sideways. The offset is what the strongest gust reaches:
 #
-# $$ \tilde\xi = \xi_0 + 8.5\ \mathrm m\ \frac{\tfrac12 \rho\, C S\, V_g^2}{\sqrt{T^2 - (m g)^2}}. \tag{3} $$
+# $$ \tilde\xi = \xi_0 + 8.5\ \mathrm m\ \frac{\tfrac12 \rho\, C S\, V_g^2}{\sqrt{T^2 - G^2}}. \tag{3} $$
 #
 # In the same weather a flight is pushed further one time than the other. The scatter is a factor, so its logarithm is
 # taken as normal, with a spread $s$; and the class is the offset in metres, rounded up:
 #
 # $$ \xi = \tilde\xi\, e^{s\,\varepsilon},\quad \varepsilon \sim N(0, 1), \qquad
 #    k = \min(\max(\lceil \xi / \mathrm m \rceil, 1), n). \tag{4} $$
+#
+# If nothing else is said, $I_m = 0.2$, $I_c = 0.3$, $V_c = 3$ m/s, $h = 1.4$, $a = 0.38$, $\theta_s = 60°$, $g = 2.5$,
+# $\xi_0 = 0.5$ m, $s = 0.21$ and $n = 6$ classes. The 8.5 m is chosen so that the distances of REPARE Table 4 come out,
+# if "mild" and "heavy" are winds of 6 and 9 m/s with a gust factor of 1.75, and the loads are 250 g and 1 kg (the last
+# one only just):
+
+# %%
+# NBVAL_CHECK_OUTPUT
+table4 = []
+for load, wind in ((0.25, 6), (1.0, 6), (0.25, 9)):
+    uav = LIGHT_QUADROTOR.loaded(load)
+    drag = 0.5 * 1.225 * uav.drag_area * (1.75 * wind) ** 2
+    offset = 0.5 + 8.5 * drag / np.sqrt(uav.thrust**2 - uav.weight**2)
+    table4.append(minimum_safe_distance(np.ceil(offset), uav.diameter))
+    print(f"load {load:.2f} kg, wind {wind} m/s: ξ = {offset:.3f} m, D_min = {table4[-1]:.1f} m")
+assert table4 == [3.5, 4.5, 5.5]
 
 # %%
 winds = np.linspace(0, 10, 101)
 base = {"temperature_c": 15.0, "humidity_percent": 60.0, "pressure_hpa": 985.0, "wind_speed": winds}
 figure, axes = plot.new_figure(6.6, 3.9)
-for label, angle, sun, color, style in (
-    ("along the streets, sunny", 60.0, 800.0, "#D55E00", "-"),
-    ("along the streets, night", 60.0, 0.0, "#000000", "--"),
-    ("across the streets, sunny", 150.0, 800.0, "#0072B2", "-."),
+for label, angle, sun, color, style, level in (
+    ("along the streets, sunny", 60.0, 800.0, "#D55E00", "-", 5),
+    ("along the streets, night", 60.0, 0.0, "#000000", "--", 4),
+    ("across the streets, sunny", 150.0, 800.0, "#0072B2", "-.", 2),
 ):
     weather = {name: np.broadcast_to(v, winds.shape) for name, v in (base | {"wind_from_deg": angle}).items()}
     median = prediction.median_offsets(weather | {"radiation": np.full(winds.shape, sun)}, LIGHT_QUADROTOR)
+    assert np.ceil(np.interp(5.5, winds, median)) == level
     axes.plot(winds, median, color=color, linestyle=style, label=label)
     axes.fill_between(winds, median * np.exp(-0.21), median * np.exp(0.21), color=color, alpha=0.15, linewidth=0)
 axes.set(
@@ -115,8 +131,8 @@ axes.legend(fontsize=8)
 plot.finished(figure)
 
 # %% [markdown]
-# The horizontal lines are where the class changes. The same wind is class 2 or class 5, depending on where it comes
-# from.
+# The horizontal lines are where the class changes. The median of the same wind, 5.5 m/s, is class 2 or class 5,
+# depending on where it comes from.
 #
 # ## A table to learn from
 #
@@ -242,6 +258,8 @@ for name, measure in (("Ridge", "r2"), ("GaussianNB", "accuracy"), ("XGBClassifi
     value, around = 100 * steady_mean[measure][name], 100 * steady_reach[measure][name]
     print(f"{name:<14} {measure:<9} {value:3.0f} ± {around:.0f} %   printed: {printed[name]} %")
     assert abs(value - printed[name]) < around < 8
+print(f"Ridge's accuracy: {steady_mean.accuracy['Ridge']:.0%}")
+assert 0.43 < steady_mean.accuracy["Ridge"] < 0.52
 
 # %%
 figure, axes = plot.new_figure(6.8, 2.6)
@@ -260,8 +278,9 @@ plot.finished(figure)
 
 # %% [markdown]
 # So the three are possible together *if Ridge's is an $R^2$*: each printed figure lies where a single run may fall.
-# It remains a guess, since other settings can do the same; but as an accuracy beside the other two it is not to be
-# had. **Before models are compared, they need the same measure.**
+# It remains a guess, since other settings can do the same. As an accuracy we found 9 % nowhere: Ridge gets 56 % of
+# the classes right in the first setting and nearly half of them in this one. **Before models are compared, they need
+# the same measure.**
 #
 # ## Where does a model go wrong?
 #
@@ -372,6 +391,8 @@ for name in names:
 for table in (paper, real):
     assert table.bayes_gap["log-offset"] < 0.015
     assert 0.03 < table.bayes_gap["XGBClassifier"] < 0.05
+    assert table.bayes_gap["ordinal"] < 0.55 * table.bayes_gap["XGBClassifier"]
+    assert table.bayes_gap["log-offset"] < 0.5 * table.bayes_gap["ordinal"]
     assert list(table.bayes_gap[names]) == sorted(table.bayes_gap[names], reverse=True)
 
 # %%
@@ -393,7 +414,8 @@ plot.finished(figure)
 
 # %% [markdown]
 # The regression of the logarithm comes within one point and a half of the limit, in both settings; XGBClassifier lacks
-# about four. No tuning of a classifier brings that back: what helps is to give it the offset instead of its class.
+# about four. The order of the classes brings half of that back, the offset in place of its class more than half of
+# the rest.
 #
 # ## Why safety wants another class
 #
@@ -542,7 +564,7 @@ assert all(within.values())
 # | Ridge | 9.424 % "accuracy" | as an accuracy about 56 %; as an $R^2$ 9 % is possible beside the other two |
 # | all three | shares of 1 466 test samples | none is $k/1466$ |
 # | best model | XGBClassifier | four points below what is possible; the log-offset regression lacks one |
-# | $\sigma$ "by rounding up" | | only as a quantile: 14 % of the best model's classes are too low, 1 % of those |
+# | $\sigma$ | "by rounding up" | the best model is too low in 14 % of the flights, its 95 % quantile in 1 % |
 #
 # ## Your turn
 #
