@@ -1,8 +1,12 @@
 """What several tests share."""
 
 import pytest
+from hypothesis import settings
 
 from uavlab.city import City, table1_city
+
+settings.register_profile("any machine", deadline=None)  # tests don't time
+settings.load_profile("any machine")
 
 
 @pytest.fixture(scope="session")

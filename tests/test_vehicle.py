@@ -60,6 +60,8 @@ def test_thrust_is_never_exceeded(payload, force):
         ({"rain_area": 0}, "rain_area must be finite and above 0"),
         ({"diameter": -1.0}, "diameter must be finite and above 0"),
         ({"payload": -0.1}, "payload must be finite and at least 0, got -0.1"),
+        ({"mass": "1.5"}, "mass must be a number or an array of numbers: got text, '1.5'"),
+        ({"payload": np.array([0.1, 0.2])}, r"payload must be one number, got an array of shape \(2,\)"),
         ({"max_tilt": 35.0}, "max_tilt must be below π/2 in radians, got 35; convert with numpy.radians"),
         ({"cruise_speed": 20.0}, "cruise_speed 20 m/s is above top_speed 18 m/s"),
         ({"payload": 1.4}, r"thrust 28 N can't lift 1.5 kg \+ payload 1.4 kg \(28.4 N\): carry less"),

@@ -4,34 +4,57 @@ import numpy as np
 import numpy.typing as npt
 
 
+def numbers(name: str, value: npt.ArrayLike) -> np.ndarray:
+    """The argument as floats; text is refused, even where NumPy would read a number in it."""
+    try:
+        values = np.asarray(value)
+        if values.dtype.kind == "U":
+            raise ValueError(f"got text, {value!r:.60}")
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as wrong:
+        raise ValueError(f"{name} must be a number or an array of numbers: {wrong}") from wrong
+
+
+def number(name: str, value: npt.ArrayLike) -> None:
+    shape = numbers(name, value).shape
+    if shape:
+        raise ValueError(f"{name} must be one number, got an array of shape {shape}")
+
+
+def whole(name: str, value: int, least: int) -> None:
+    if not (isinstance(value, int | np.integer) and value >= least):
+        raise ValueError(f"{name} must be a whole number of at least {least}, got {value!r}")
+
+
 def within(name: str, value: npt.ArrayLike, low: float, high: float, unit: str) -> None:
-    values = np.asarray(value, dtype=float)
+    values = numbers(name, value)
     refuse(values, (values >= low) & (values <= high), f"{name} must be from {low:g} to {high:g} {unit}")
 
 
 def not_negative(name: str, value: npt.ArrayLike) -> None:
-    values = np.asarray(value, dtype=float)
+    values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values >= 0), f"{name} must be finite and at least 0")
 
 
 def positive(name: str, value: npt.ArrayLike) -> None:
-    values = np.asarray(value, dtype=float)
+    values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values > 0), f"{name} must be finite and above 0")
 
 
 def at_least_one(name: str, value: npt.ArrayLike) -> None:
-    values = np.asarray(value, dtype=float)
+    values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values >= 1), f"{name} must be finite and at least 1")
 
 
 def vectors(**named: npt.ArrayLike) -> list[np.ndarray]:
     """The arguments as float arrays (..., D), all finite and with the same D, 2 or 3."""
-    arrays = {name: np.asarray(value, dtype=float) for name, value in named.items()}
+    arrays = {name: numbers(name, value) for name, value in named.items()}
     for name, array in arrays.items():
         if array.ndim == 0 or array.shape[-1] not in (2, 3):
             raise ValueError(f"{name} must be a vector (east, north) or (east, north, up), got shape {array.shape}")
         if not np.isfinite(array).all():
-            raise ValueError(f"{name} must be finite, got {array[~np.isfinite(array).all(axis=-1)].tolist()}")
+            wrong = array[~np.isfinite(array).all(axis=-1)]
+            raise ValueError(f"{name} must be finite, got {wrong[0].tolist()}")
     if len({array.shape[-1] for array in arrays.values()}) > 1:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
         raise ValueError(f"all vectors must have as many components, got shapes {shapes}")
@@ -41,30 +64,30 @@ def vectors(**named: npt.ArrayLike) -> list[np.ndarray]:
 def air(temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_hpa: npt.ArrayLike) -> None:
     within("temperature_c", temperature_c, -60.0, 60.0, "°C (kelvin? subtract 273.15)")
     within("humidity_percent", humidity_percent, 0.0, 100.0, "%")
-    highest = np.asarray(pressure_hpa, dtype=float).max(initial=0.0)
+    highest = numbers("pressure_hpa", pressure_hpa).max(initial=0.0)
     if highest > 30_000:
         raise ValueError(f"pressure_hpa must be in hPa, got {highest:g}, which looks like Pa: divide by 100")
     within("pressure_hpa", pressure_hpa, 300.0, 1100.0, "hPa")
 
 
 def finite(name: str, value: npt.ArrayLike) -> None:
-    values = np.asarray(value, dtype=float)
+    values = numbers(name, value)
     refuse(values, np.isfinite(values), f"{name} must be finite")
 
 
 def share(name: str, value: npt.ArrayLike) -> np.ndarray:
-    values = np.asarray(value, dtype=float)
+    values = numbers(name, value)
     refuse(values, (values > 0) & (values < 1), f"{name} must be between 0 and 1, without the ends")
     return values
 
 
 def samples(values: npt.ArrayLike, *, least: int, axes: int = 1) -> np.ndarray:
     """Samples (N,), or (N, axes), as floats: finite, enough of them, and not all equal on any axis."""
-    values = np.asarray(values, dtype=float)
+    values = numbers("samples", values)
     if values.ndim != min(axes, 2) or (axes > 1 and values.shape[1] != axes):
         wanted = "(N,)" if axes == 1 else f"(N, {axes})"
         raise ValueError(f"samples must have shape {wanted}, got {values.shape}")
-    bad = np.flatnonzero(~np.isfinite(values.reshape(len(values), -1)).all(axis=1))
+    bad = np.flatnonzero(~np.isfinite(values.reshape(len(values), axes)).all(axis=1))
     if len(bad):
         rows = ", ".join(map(str, bad[:5])) + (", …" if len(bad) > 5 else "")
         raise ValueError(f"samples must be finite: {len(bad)} of {len(values)} are not, at {rows}; drop or repair them")

@@ -9,6 +9,8 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 import numpy.typing as npt
 
+from uavlab import checks
+
 GRAVITY = 9.81
 """Acceleration of free fall [m/s²]."""
 
@@ -40,7 +42,7 @@ class UAV:
     Raises
     ------
     ValueError
-        If a number is not finite or out of its range, or the rotors can't lift the weight.
+        If a value is not one finite number or out of its range, or the rotors can't lift the weight.
     """
 
     mass: float
@@ -58,10 +60,9 @@ class UAV:
         for item in fields(self):
             if item.name == "name":
                 continue
-            value = getattr(self, item.name)
-            if not np.isfinite(value) or value < 0 or (value == 0 and item.name != "payload"):
-                least = "at least 0" if item.name == "payload" else "above 0"
-                raise ValueError(f"{item.name} must be finite and {least}, got {value:g}")
+            checks.number(item.name, getattr(self, item.name))
+            check = checks.not_negative if item.name == "payload" else checks.positive
+            check(item.name, getattr(self, item.name))
         if self.max_tilt >= np.pi / 2:
             raise ValueError(
                 f"max_tilt must be below π/2 in radians, got {self.max_tilt:g}; convert with numpy.radians"
@@ -103,11 +104,8 @@ class UAV:
         ValueError
             If the force is negative or not finite.
         """
-        force = np.asarray(downward_force, dtype=float)
-        wrong = ~(np.isfinite(force) & (force >= 0))
-        if wrong.any():
-            raise ValueError(f"downward_force must be finite and at least 0, got {force[wrong].flat[0]:g}")
-        down = self.weight + force
+        checks.not_negative("downward_force", downward_force)
+        down = self.weight + np.asarray(downward_force, dtype=float)
         return np.minimum(np.sqrt(np.maximum(self.thrust**2 - down**2, 0.0)), down * np.tan(self.max_tilt))
 
 

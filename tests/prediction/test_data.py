@@ -56,6 +56,8 @@ def test_synthetic_weather_is_weather():
         (lambda: make_dataset("berlin"), "setting must be one of 'paper', 'steady wind', 'greensboro', got 'berlin'"),
         (lambda: make_dataset(count=100, train_count=100), "train_count must be from 1 to count - 1 = 99, got 100"),
         (lambda: make_dataset("greensboro", count=9000), "count must be at most 8760"),
+        (lambda: make_dataset(train_count=0.8), "train_count must be a whole number"),
+        (lambda: synthetic_weather(5, 0, wind_scale=-1), "wind_scale must be finite and above 0"),
         (lambda: Setting(noise=0.0), "noise must be finite and above 0, got 0"),
         (lambda: Setting(wind_shape=-1.0), "wind_shape must be finite and above 0"),
         (lambda: Setting(wind_scale=math.nan), "wind_scale must be finite and above 0, got nan"),

@@ -146,6 +146,8 @@ def test_bayes_accuracy_falls_with_the_noise():
     ("call", "message"),
     [
         (lambda: class_probabilities([0.0], 0.2, 2.5), "class_count must be a whole number"),
+        (lambda: median_offsets(CALM, UAV, street_axis_deg=math.nan), "street_axis_deg must be finite"),
+        (lambda: class_probabilities([math.nan], 0.2), "log_median must be finite"),
         (lambda: class_probabilities([0.0], 0.0), "noise must be finite and above 0"),
         (lambda: offset_class([1.0, -2.0]), "offsets must be finite and at least 0, got -2"),
         (lambda: offset_class([math.nan]), "offsets must be finite"),

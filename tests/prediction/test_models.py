@@ -137,10 +137,19 @@ def test_ordinal_model_copes_with_a_class_that_never_occurs():
 
 
 def test_wrong_questions_are_refused():
-    with pytest.raises(ValueError, match=r"seeds must be at least 2 different ones, got \[1, 1\]"):
-        compare_models([1, 1])
+    with pytest.raises(ValueError, match=r"seeds must be at least 2 and all different, got \[1, 1, 2\]"):
+        compare_models([1, 1, 2])
     with pytest.raises(ValueError, match="setting must be one of"):
         compare_models([1, 2], setting="mars", models=PAPER_MODELS)
     data = make_dataset(count=60, train_count=50)
     with pytest.raises(ValueError, match=r"predicted must have shape \(10,\), .* got \(9,\)"):
         score(data, np.ones(9))
+    with pytest.raises(ValueError, match="predicted must be finite, got nan"):
+        score(data, np.full(10, np.nan))
+
+
+def test_a_table_of_one_class_can_be_scored():
+    """Where R² = 1 − 0/0 has to be said otherwise: 1 when all are right, else 0."""
+    calm = make_dataset(Setting(wind_scale=0.05), 0, count=60, train_count=50)
+    assert score(calm, np.ones(10))["r2"] == 1
+    assert score(calm, np.full(10, 2.0))["r2"] == 0

@@ -11,6 +11,7 @@ import pytest
 import xgboost
 
 from uavlab.prediction import FEATURES, OffsetPredictor, make_dataset, offset_class
+from uavlab.prediction.predictor import ATTRIBUTE
 from uavlab.prediction.requirements import require
 from uavlab.weather import Weather
 
@@ -121,11 +122,32 @@ def test_other_files_are_refused(some, tmp_path):
     xgboost.XGBRegressor(n_estimators=2).fit(features, offsets).save_model(tmp_path / "foreign.json")
     (tmp_path / "empty.json").write_text("{}")
     (tmp_path / "text.json").write_text("no model")
-    for name in ("foreign", "empty", "text"):
+    (tmp_path / "nothing.json").write_bytes(b"")  # XGBoost itself ends the process on it
+    (tmp_path / "binary.json").write_bytes(bytes(range(256)))
+    fitted = OffsetPredictor().fit(features, offsets)
+    fitted.save(tmp_path / "whole.json")
+    whole = (tmp_path / "whole.json").read_bytes()
+    (tmp_path / "half.json").write_bytes(whole[: len(whole) // 2])
+    booster = fitted.fitted.booster.copy()
+    booster.set_attr(**{ATTRIBUTE: '{"class_count": 6}'})
+    booster.save_model(tmp_path / "incomplete.json")
+    for name in ("foreign", "empty", "text", "nothing", "binary", "half", "incomplete"):
         with pytest.raises(ValueError, match=rf"{name}\.json is no file that OffsetPredictor\.save wrote"):
             OffsetPredictor.load(tmp_path / f"{name}.json")
     with pytest.raises(FileNotFoundError):
         OffsetPredictor.load(tmp_path / "nowhere.json")
+    with pytest.raises(FileNotFoundError):
+        fitted.save(tmp_path / "no folder" / "a.json")
+
+
+def test_numbers_of_numpy_and_a_list_of_features_can_be_saved(some, tmp_path):
+    features, offsets = some
+    names = ["wind_speed", "radiation"]
+    fitted = OffsetPredictor(names, class_count=np.int64(5), quantile=np.float32(0.9)).fit(features, offsets)
+    fitted.save(tmp_path / "a.json")
+    loaded = OffsetPredictor.load(tmp_path / "a.json", names)
+    assert (loaded.features, loaded.class_count) == (("wind_speed", "radiation"), 5)
+    assert np.array_equal(loaded.predict_offset(features), fitted.predict_offset(features))
 
 
 def test_outside_of_the_trained_range_it_warns_and_names_the_feature(predictor, data):
@@ -143,6 +165,15 @@ def test_one_state_of_the_weather_is_a_row(predictor, data):
     state = Weather(pressure_hpa=985.0, forecast_wind=5.0, wind_from_deg=60.0, radiation=300.0)
     row = pd.DataFrame([dict(zip(FEATURES, (15.0, 50.0, 985.0, 5.0, 60.0, 300.0), strict=True))])
     assert predictor.predict_offset(state).tolist() == predictor.predict_offset(row).tolist()
+
+
+def test_a_row_can_be_a_mapping_of_numbers(predictor, data):
+    row = data.features[data.train].iloc[7]
+    expected = predictor.predict_offset(data.features[data.train].iloc[[7]])
+    assert np.array_equal(predictor.predict_offset(row), expected)
+    assert np.array_equal(predictor.predict_offset(dict(row)), expected)
+    several = predictor.predict_offset({**dict(row), "wind_speed": [row["wind_speed"]] * 3})
+    assert np.array_equal(several, np.repeat(expected, 3))
 
 
 def test_columns_are_found_by_name(predictor, data):
@@ -188,6 +219,12 @@ def test_other_wrong_questions(predictor, some, tmp_path):
     features, offsets = some
     for wrong, message in (
         (lambda: OffsetPredictor(quantile=1.0), "quantile must be from 0.5 to below 1, got 1.0"),
+        (lambda: OffsetPredictor("wind_speed"), "features must be a tuple of different column names, got 'wind_speed'"),
+        (lambda: OffsetPredictor(()), r"different column names, got \(\)"),
+        (lambda: OffsetPredictor(("radiation", "radiation")), "different column names"),
+        (lambda: OffsetPredictor().fit(features, np.ones(60)), "offsets must differ, all are 1 m"),
+        (lambda: OffsetPredictor().fit(features, ["far"] * 60), "offsets must be a number or an array of numbers"),
+        (lambda: OffsetPredictor().fit(features.assign(wind_speed="calm"), offsets), "wind_speed must be .*'calm'"),
         (lambda: OffsetPredictor(class_count=0), "class_count must be a whole number of at least 2, got 0"),
         (lambda: OffsetPredictor().predict_class(features), "hasn't learned yet"),
         (lambda: OffsetPredictor().save(tmp_path / "a.json"), "hasn't learned yet"),
@@ -236,3 +273,11 @@ def test_without_xgboost_the_error_is_clear(some):
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert 'ImportError: uavlab.prediction needs xgboost: pip install "uavlab[prediction]"' in run.stderr
+
+
+def test_north_wind_is_no_news(recwarn):
+    data = make_dataset("paper", 3)
+    predictor = OffsetPredictor().fit(data.features[data.train], data.offsets[data.train])
+    assert predictor.fitted.ranges["wind_from_deg"][0] > 0
+    predictor.predict_class(Weather(forecast_wind=3.0, wind_from_deg=0.0))
+    assert not [warning for warning in recwarn if "wind_from_deg" in str(warning.message)]

@@ -152,6 +152,7 @@ def test_reference_wind_is_the_stronger_mean_and_the_stronger_gust():
     ("winds", "words"),
     [
         ((-1, 0, 0), "forecast_mean must be finite and at least 0, got -1"),
+        (([1, 2], 0, 0), r"forecast_mean must be one number, got an array of shape \(2,\)"),
         ((0, np.nan, 0), "measured_mean must be .* got nan"),
         ((0, 0, np.inf), "forecast_max must be .* got inf"),
     ],
@@ -286,6 +287,8 @@ def test_drag_over_many_winds():
         ({"drag_area": 0}, "drag_area must be finite and above 0, got 0"),
         ({"air_density": -1.2}, "air_density must be finite and above 0, got -1.2"),
         ({"wind": (np.nan, 0)}, "wind must be finite, got"),
+        ({"wind": np.full((1000, 2), np.nan)}, r"wind must be finite, got \[nan, nan\]$"),  # one of them is enough
+        ({"wind": [("calm", 0)]}, "wind must be a number or an array of numbers: got text"),
         ({"ground_velocity": (0, np.inf)}, "ground_velocity must be finite, got"),
         ({"wind": (1, 0, 0)}, "as many components"),
         ({"wind": (1, 0, 0, 0)}, "wind must be a vector"),
@@ -294,6 +297,18 @@ def test_drag_over_many_winds():
 def test_wrong_drag_is_refused(arguments, words):
     with pytest.raises(ValueError, match=words):
         wind_drag(**({"wind": (1, 0), "ground_velocity": (0, 0), "drag_area": 0.05} | arguments))
+
+
+@pytest.mark.parametrize("as_printed", [False, True])
+@pytest.mark.parametrize("count", [3, 4])  # 3 is also the number of components
+def test_each_drag_has_its_own_density(count, as_printed):
+    winds, density = np.arange(3.0 * count).reshape(count, 3), np.linspace(1.0, 1.3, count)
+    together = wind_drag(winds, -winds, 0.05, air_density=density, as_printed=as_printed)
+    one_by_one = [
+        wind_drag(wind, -wind, 0.05, air_density=float(rho), as_printed=as_printed)
+        for wind, rho in zip(winds, density, strict=True)
+    ]
+    assert together == pytest.approx(np.array(one_by_one))
 
 
 def test_weather_joins_what_belongs_to_it():
@@ -313,6 +328,10 @@ def test_weather_joins_what_belongs_to_it():
         ({"measured_wind": np.inf}, "measured_wind must be"),
         ({"rain_mm_per_h": -0.5}, "rain_mm_per_h must be finite and at least 0, got -0.5"),
         ({"radiation": -10}, "radiation must be"),
+        ({"radiation": "bright"}, "radiation must be a number or an array of numbers: got text, 'bright'"),
+        ({"rain_mm_per_h": "5"}, "rain_mm_per_h must be a number"),  # NumPy would take it for 5.0
+        ({"measured_wind": None}, "measured_wind must be finite and at least 0, got nan"),
+        ({"measured_wind": np.array([3.0, 4.0])}, r"measured_wind must be one number, .* shape \(2,\)"),
         ({"wind_from_deg": 361}, "wind_from_deg must be from 0 to 360 degrees, got 361"),
         ({"wind_from_deg": np.nan}, "wind_from_deg must be from 0 to 360 degrees, got nan"),
     ],

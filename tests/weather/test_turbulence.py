@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.signal import welch
@@ -55,6 +55,7 @@ def test_step_keeps_the_stationary_covariance(step):
     assert np.linalg.eigvalsh(covariance)[0] > 0
 
 
+@settings(deadline=None)
 @given(st.floats(1e-3, 3.0))
 def test_step_agrees_with_the_integral_and_with_two_halves(step):
     """Covariance ∫ e^{As} B Bᵀ e^{Aᵀs} ds; e^{As} B = e^{−s} (1, s)."""
@@ -64,6 +65,13 @@ def test_step_agrees_with_the_integral_and_with_two_halves(step):
     half, noise = lag_step(step / 2)
     assert half @ half == pytest.approx(transition, abs=1e-12)
     assert half @ noise @ half.T + noise == pytest.approx(covariance, abs=1e-12)
+
+
+@pytest.mark.parametrize("step", [1e-12, 1e-6, 1e-3])
+def test_short_step_has_the_covariance_of_integrated_noise(step):
+    """To a relative 2h, entry by entry: h, h²/2 and h³/3, of which the last is easily lost beside the first."""
+    expected = np.array([[step, step**2 / 2], [step**2 / 2, step**3 / 3]])
+    assert lag_step(step)[1] / expected == pytest.approx(np.ones((2, 2)), abs=2 * step + 1e-12)
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])

@@ -122,7 +122,7 @@ def offset_paths(
     rng : numpy.random.Generator or int
         Or a seed.
     count : int
-        Number of paths.
+        Number of paths, at least 1.
     step : float
         [s], above 0.
     natural_frequency : float
@@ -143,8 +143,10 @@ def offset_paths(
     ValueError
         If an argument is not finite or out of its range.
     """
-    for name, value in (("sigma", sigma), ("step", step), ("natural_frequency", natural_frequency), ("count", count)):
+    for name, value in (("sigma", sigma), ("step", step), ("natural_frequency", natural_frequency)):
         checks.positive(name, value)
+    checks.whole("count", count, 1)
+    checks.number("duration", duration)
     if not step <= duration < np.inf:
         raise ValueError(f"duration must be finite and at least one step of {step:g} s, got {duration!r}")
     steps, turn = round(duration / step), natural_frequency * step

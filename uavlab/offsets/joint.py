@@ -44,7 +44,7 @@ class JointOffset:
 
     def __post_init__(self) -> None:
         for name in ("mean", "sigma"):
-            pair = np.asarray(getattr(self, name), dtype=float)
+            pair = checks.numbers(name, getattr(self, name))
             if pair.shape != (2,):
                 raise ValueError(f"{name} must be two numbers, one for each axis, got shape {pair.shape}")
             object.__setattr__(self, name, tuple(pair.tolist()))
@@ -55,11 +55,20 @@ class JointOffset:
 
     @classmethod
     def fit(cls, samples: npt.ArrayLike) -> "JointOffset":
-        """The model with the means, standard deviations (n − 1) and correlation of samples (N, 2) [m], N at least 3."""
+        """The model with the means, standard deviations (n − 1) and correlation of samples (N, 2) [m], N at least 3.
+
+        Raises
+        ------
+        ValueError
+            If a sample is not finite, there are too few, or they lie on a line.
+        """
         values = checks.samples(samples, least=3, axes=2)
         mean, covariance = values.mean(axis=0), np.cov(values.T)
         sigma = np.sqrt(np.diag(covariance))
-        return cls(tuple(mean), tuple(sigma), float(covariance[0, 1] / sigma.prod()))
+        correlation = float(covariance[0, 1] / sigma.prod())
+        if abs(correlation) > 1 - 1e-12:
+            raise ValueError("samples lie on a line, so one axis says all: fit an OffsetModel along it")
+        return cls(tuple(mean), tuple(sigma), correlation)
 
     @property
     def covariance(self) -> np.ndarray:
@@ -74,7 +83,10 @@ class JointOffset:
 
     def radius_in_sigma(self, points: npt.ArrayLike) -> np.ndarray:
         """r of points (..., 2) [m]: which ellipse around the mean they lie on (the Mahalanobis distance)."""
-        u, v = np.moveaxis((np.asarray(points, dtype=float) - self.mean) / self.sigma, -1, 0)
+        where = checks.numbers("points", points)
+        if where.shape[-1:] != (2,):
+            raise ValueError(f"points must have shape (..., 2), got {where.shape}")
+        u, v = np.moveaxis((where - self.mean) / self.sigma, -1, 0)
         return np.sqrt((u**2 - 2 * self.correlation * u * v + v**2) / (1 - self.correlation**2))
 
     def ellipse(self, coverage: float = PAUTA_COVERAGE, count: int = 181) -> np.ndarray:

@@ -146,7 +146,8 @@ def minimum_safe_distance(
     Raises
     ------
     ValueError
-        If an argument is negative or not finite, a normal has no direction, or only one of μ and n is given.
+        If an argument is negative or not finite, a normal has no direction, μ and n don't have as many components, or
+        only one of them is given.
     """
     checks.not_negative("offset", offset)
     checks.positive("uav_diameter", uav_diameter)
@@ -155,9 +156,7 @@ def minimum_safe_distance(
         return distance[()]
     if mean_offset is None or normal is None:
         raise ValueError("mean_offset and normal belong together: give both or neither")
-    mean, away = np.asarray(mean_offset, dtype=float), np.asarray(normal, dtype=float)
-    checks.finite("mean_offset", mean)
-    checks.finite("normal", away)
+    mean, away = checks.vectors(mean_offset=mean_offset, normal=normal)
     length = np.linalg.norm(away, axis=-1)
     if not (length > 0).all():
         raise ValueError(

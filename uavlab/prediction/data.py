@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from uavlab import checks
-from uavlab.prediction.generator import FEATURES, checked_class_count, median_offsets, offset_class, simulate_offsets
+from uavlab.prediction.generator import FEATURES, median_offsets, offset_class, simulate_offsets
 from uavlab.prediction.requirements import require
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
 from uavlab.weather import greensboro_weather
@@ -56,7 +56,7 @@ class Setting:
         checks.positive("wind_shape", self.wind_shape)
         if not 0 <= self.channelling < 1:
             raise ValueError(f"channelling must be from 0 to below 1, got {self.channelling!r}")
-        checked_class_count(self.class_count)
+        checks.whole("class_count", self.class_count, 2)
 
 
 SETTINGS: Mapping[str, Setting] = {
@@ -122,7 +122,15 @@ def synthetic_weather(
     -------
     pandas.DataFrame
         (count, 6), the columns `FEATURES`.
+
+    Raises
+    ------
+    ValueError
+        If the count isn't a whole number, or the wind's scale or shape not above 0.
     """
+    checks.whole("count", count, 0)
+    checks.positive("wind_scale", wind_scale)
+    checks.positive("wind_shape", wind_shape)
     rng = np.random.default_rng(rng)
     day, hour = rng.uniform(0, 365, count), rng.uniform(0, 24, count)
     season, warmth = np.cos(2 * np.pi * (day - 200) / 365), np.cos(2 * np.pi * (hour - 15) / 24)
@@ -177,7 +185,9 @@ def make_dataset(
         if setting not in SETTINGS:
             raise ValueError(f"setting must be one of {', '.join(map(repr, SETTINGS))}, got {setting!r}")
         setting = SETTINGS[setting]
-    if not 0 < train_count < count:
+    checks.whole("count", count, 2)
+    checks.whole("train_count", train_count, 1)
+    if train_count >= count:
         raise ValueError(f"train_count must be from 1 to count - 1 = {count - 1}, got {train_count!r}")
     rng = np.random.default_rng(rng)
     if setting.real_weather:

@@ -41,14 +41,14 @@ def median_offsets(
 ) -> np.ndarray:
     """Median of the offset in a weather, by the physics alone.
 
-    ξ = ξ₀ + 8.5 m · F / F_reserve with the drag F = ½ ρ C S V² (REPARE Eq. 5) of the gust
+    ξ = ξ₀ + 8.5 m · F / F_reserve with the drag F = ½ ρ C S V² (`wind_drag`) of the gust
     V = V_station · height factor · [1 + channelling · cos 2(wind direction − street)] · (1 + peak factor · I), the
     turbulence intensity I = I_m + I_c · (radiation / 1000 W/m²) / (1 + V_station/V_c), which the sun raises most when
     the wind is light, ρ of moist air, and F_reserve the thrust that the weight leaves sideways.
 
     Parameters
     ----------
-    weather : pandas.DataFrame, mapping of arrays or Weather
+    weather : pandas.DataFrame, mapping of arrays or numbers, or Weather
         With the columns `FEATURES`, N rows.
     uav : UAV
     channelling : float
@@ -81,6 +81,7 @@ def median_offsets(
         If a parameter or a value of the weather is out of its range, a column is missing, or the rotors have no
         reserve.
     """
+    checks.finite("street_axis_deg", street_axis_deg)
     checks.positive("height_factor", height_factor)
     checks.positive("convective_wind", convective_wind)
     checks.positive("stiffness", stiffness)
@@ -114,7 +115,7 @@ def simulate_offsets(
 
     Parameters
     ----------
-    weather : pandas.DataFrame, mapping of arrays or Weather
+    weather : pandas.DataFrame, mapping of arrays or numbers, or Weather
         With the columns `FEATURES`, N rows.
     uav : UAV
     rng : numpy.random.Generator or int
@@ -157,7 +158,7 @@ def offset_class(offsets: npt.ArrayLike, class_count: int = 6) -> np.ndarray:
     ValueError
         If an offset is negative or not finite.
     """
-    checked_class_count(class_count)
+    checks.whole("class_count", class_count, 2)
     checks.not_negative("offsets", offsets)
     return np.clip(np.ceil(offsets), 1, class_count).astype(int)
 
@@ -184,10 +185,11 @@ def class_probabilities(log_median: npt.ArrayLike, noise: float, class_count: in
     Raises
     ------
     ValueError
-        If the noise or the number of classes is out of its range.
+        If a median is not finite, or the noise or the number of classes out of its range.
     """
-    checked_class_count(class_count)
+    checks.whole("class_count", class_count, 2)
     checks.positive("noise", noise)
+    checks.finite("log_median", log_median)
     middle = np.atleast_1d(np.asarray(log_median, dtype=float))[:, None]
     below = ndtr((np.log(np.arange(1, class_count)) - middle) / noise)
     return np.diff(below, axis=1, prepend=0.0, append=1.0)
@@ -209,11 +211,6 @@ def bayes_accuracy(log_median: npt.ArrayLike, noise: float, class_count: int = 6
         From 1/class_count to 1.
     """
     return float(class_probabilities(log_median, noise, class_count).max(axis=1).mean())
-
-
-def checked_class_count(class_count: int) -> None:
-    if not (isinstance(class_count, int | np.integer) and class_count >= 2):
-        raise ValueError(f"class_count must be a whole number of at least 2, got {class_count!r}")
 
 
 def feature_table(weather: Any, names: tuple[str, ...] = FEATURES) -> "pandas.DataFrame":
@@ -239,13 +236,17 @@ def checked_columns(weather: Any, names: tuple[str, ...] = FEATURES) -> "pandas.
         }
     if not hasattr(weather, "keys"):
         raise ValueError(f"features must be a table with the columns {', '.join(names)}, got {type(weather).__name__}")
-    table = weather if isinstance(weather, pandas.DataFrame) else pandas.DataFrame(dict(weather))
+    if isinstance(weather, pandas.DataFrame):
+        table = weather
+    else:
+        one_row = not any(np.ndim(value) for value in dict(weather).values())
+        table = pandas.DataFrame(dict(weather), index=[0] if one_row else None)
     missing = [name for name in names if name not in table.columns]
     if missing:
         others = [str(name) for name in table.columns if name not in names]
         instead = f"; unknown: {', '.join(others)}" if others else ""
         raise ValueError(f"features lack {', '.join(missing)}{instead}")
-    return table[list(names)].astype(float)
+    return pandas.DataFrame({name: checks.numbers(name, table[name]) for name in names}, index=table.index)
 
 
 def missing_values(table: "pandas.DataFrame") -> str:

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import stdtrit
 
+from uavlab import checks
 from uavlab.prediction.data import Dataset, Setting, make_dataset
 from uavlab.prediction.generator import bayes_accuracy, class_probabilities, offset_class
 from uavlab.prediction.requirements import require
@@ -138,8 +140,9 @@ def score(data: Dataset, predicted: npt.ArrayLike) -> dict[str, float]:
     Raises
     ------
     ValueError
-        If there are not as many predictions as rows.
+        If there are not as many predictions as rows, or one is not finite.
     """
+    checks.finite("predicted", predicted)
     predicted = np.asarray(predicted, dtype=float)
     true = data.classes[data.test]
     if predicted.shape != true.shape:
@@ -149,7 +152,7 @@ def score(data: Dataset, predicted: npt.ArrayLike) -> dict[str, float]:
     expected = class_probabilities(*known)[np.arange(len(true)), classes - 1].mean()
     return {
         "accuracy": float((classes == true).mean()),
-        "r2": float(1 - ((predicted - true) ** 2).sum() / ((true - true.mean()) ** 2).sum()),
+        "r2": float(require("sklearn.metrics").r2_score(true, predicted)),
         "under_prediction": float((classes < true).mean()),
         "excess": float(np.maximum(classes - true, 0).mean()),
         "bayes_gap": bayes_accuracy(*known) - float(expected),
@@ -191,12 +194,12 @@ def compare_models(
     Raises
     ------
     ValueError
-        If there are fewer than 2 seeds, or the setting is unknown.
+        If there are fewer than 2 seeds or one is repeated, or the setting is unknown.
     """
     pandas, joblib = require("pandas"), require("joblib")
     seeds = list(seeds)
-    if len(set(seeds)) < 2:
-        raise ValueError(f"seeds must be at least 2 different ones, got {seeds}")
+    if len(seeds) < 2 or len(set(seeds)) < len(seeds):  # the same data twice would narrow the interval
+        raise ValueError(f"seeds must be at least 2 and all different, got {seeds}")
     jobs: Iterable[int] = require("tqdm").tqdm(seeds, unit="dataset") if progress else seeds
     tables = joblib.Parallel(n_jobs=n_jobs)(joblib.delayed(scores_of_seed)(seed, setting, models) for seed in jobs)
     table = pandas.DataFrame([row for rows in tables for row in rows])
@@ -219,6 +222,4 @@ def scores_of_seed(seed: int, setting: str | Setting, models: Mapping[str, Model
 
 def student_t(count: int, coverage: float = 0.95) -> float:
     """Half-width of the interval of a mean of `count` values, in its standard errors."""
-    from scipy.stats import t
-
-    return float(t.ppf(0.5 + coverage / 2, count - 1))
+    return float(stdtrit(count - 1, 0.5 + coverage / 2))

@@ -9,6 +9,7 @@ import json
 import warnings
 from dataclasses import dataclass, replace
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,6 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.prediction.generator import (
     FEATURES,
-    checked_class_count,
     checked_columns,
     class_probabilities,
     feature_table,
@@ -74,7 +74,7 @@ class OffsetPredictor:
     Raises
     ------
     ValueError
-        If the quantile or the number of classes is out of its range.
+        If there are no features or one is repeated, or the quantile or the number of classes is out of its range.
     """
 
     features: tuple[str, ...] = FEATURES
@@ -83,7 +83,11 @@ class OffsetPredictor:
     training: Training | None = None
 
     def __post_init__(self) -> None:
-        checked_class_count(self.class_count)
+        names = self.features
+        if isinstance(names, str) or not names or len(set(names)) < len(names):
+            raise ValueError(f"features must be a tuple of different column names, got {names!r}")
+        object.__setattr__(self, "features", tuple(names))
+        checks.whole("class_count", self.class_count, 2)
         if not 0.5 <= self.quantile < 1:
             raise ValueError(f"quantile must be from 0.5 to below 1, got {self.quantile!r}")
 
@@ -107,10 +111,11 @@ class OffsetPredictor:
         Raises
         ------
         ValueError
-            If a column is missing, a row has no number, an offset isn't above 0, or there are too few rows.
+            If a column is missing, a row has no number, an offset isn't above 0, all offsets are equal, or there are
+            too few rows.
         """
         table = checked_columns(features, self.features)
-        reached = np.asarray(offsets, dtype=float)
+        reached = checks.numbers("offsets", offsets)
         if reached.shape != (len(table),):
             raise ValueError(f"offsets must have shape ({len(table)},), one for each row, got {reached.shape}")
         joined = table.assign(offsets=reached)
@@ -123,6 +128,8 @@ class OffsetPredictor:
             raise ValueError(f"offsets must be above 0 [m], got {reached.min():g}")
         if len(table) < MIN_ROWS:
             raise ValueError(f"features must have at least {MIN_ROWS} whole rows, got {len(table)}")
+        if np.ptp(reached) == 0:
+            raise ValueError(f"offsets must differ, all are {reached[0]:g} m: there is nothing to learn")
         model, residuals = fit_log_offset(table, reached)
         ranges = {name: (float(table[name].min()), float(table[name].max())) for name in self.features}
         margin = float(np.quantile(residuals, self.quantile))
@@ -153,7 +160,7 @@ class OffsetPredictor:
         Warns
         -----
         UserWarning
-            If a value lies outside of the range it was trained on: trees don't extrapolate.
+            If a value lies outside of the range it was trained on, by over 1 % of it: trees don't extrapolate.
         """
         return 1 + self.predict_probabilities(features).argmax(axis=1)
 
@@ -194,7 +201,8 @@ class OffsetPredictor:
         training = self.fitted
         table = feature_table(features, self.features)
         for name, (low, high) in training.ranges.items():
-            outside = (table[name] < low) | (table[name] > high)
+            slack = 0.01 * (high - low)  # a direction of 0 is no news where 0.04 was seen
+            outside = (table[name] < low - slack) | (table[name] > high + slack)
             if outside.any():
                 warnings.warn(
                     f"{name} = {table[name][outside].iloc[0]:g} is outside of {low:g} to {high:g}, the range trained "
@@ -222,15 +230,17 @@ class OffsetPredictor:
         ------
         ValueError
             If it isn't fitted, or the name doesn't end in .json.
+        OSError
+            If the file can't be written, as in a folder that doesn't exist.
         """
         training = self.fitted
         if not str(path).endswith(".json"):
             raise ValueError(f"path must end in .json, got {str(path)!r}")
-        known = {"class_count": self.class_count, "quantile": self.quantile, "spread": training.spread,
+        known = {"class_count": int(self.class_count), "quantile": float(self.quantile), "spread": training.spread,
                  "margin": training.margin, "ranges": training.ranges}  # fmt: skip
         booster = training.booster.copy()
         booster.set_attr(**{ATTRIBUTE: json.dumps(known)})
-        booster.save_model(path)
+        Path(path).write_bytes(booster.save_raw("json"))
 
     @classmethod
     def load(cls, path: str | PathLike[str], features: tuple[str, ...] = FEATURES) -> "OffsetPredictor":
@@ -255,13 +265,15 @@ class OffsetPredictor:
             If it isn't such a file, or was trained on other features.
         """
         xgboost = require("xgboost")
-        with open(path, "rb") as file:
-            content = bytearray(file.read())
+        content = Path(path).read_bytes()
         booster = xgboost.Booster()
-        try:
-            booster.load_model(content)
-            known = json.loads(booster.attr(ATTRIBUTE) or "")
-        except (xgboost.core.XGBoostError, ValueError) as wrong:
+        try:  # as plain JSON first: XGBoost ends the process on an empty file
+            known = json.loads(json.loads(content)["learner"]["attributes"][ATTRIBUTE])
+            booster.load_model(bytearray(content))
+            ranges = {name: (float(low), float(high)) for name, (low, high) in known["ranges"].items()}
+            training = Training(booster, float(known["spread"]), float(known["margin"]), ranges)
+            loaded = cls(tuple(ranges), known["class_count"], known["quantile"], training)
+        except (AttributeError, KeyError, TypeError, ValueError, xgboost.core.XGBoostError) as wrong:
             raise ValueError(f"{path} is no file that OffsetPredictor.save wrote") from wrong
         found = tuple(booster.feature_names or ())
         if found != tuple(features):
@@ -271,6 +283,4 @@ class OffsetPredictor:
                 f"{path} was trained on other features: lacks {', '.join(lacks) or 'none'}; "
                 f"unknown: {', '.join(unknown) or 'none, but their order differs'}"
             )
-        ranges = {name: (float(low), float(high)) for name, (low, high) in known["ranges"].items()}
-        training = Training(booster, known["spread"], known["margin"], ranges)
-        return cls(tuple(features), known["class_count"], known["quantile"], training)
+        return loaded

@@ -10,10 +10,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.vehicle import UAV
-from uavlab.weather.forces import GUST_FACTOR, STANDARD_AIR, Weather, lift_margin, rain_force
-
-SAFETY_FACTOR = 1.2
-"""δ of REPARE Eq. 2."""
+from uavlab.weather.forces import GUST_FACTOR, SAFETY_FACTOR, STANDARD_AIR, Weather, lift_margin, rain_force
 
 
 def wind_limit(
@@ -80,9 +77,8 @@ def course_wind_limit(air_speed: float, ground_speed: npt.ArrayLike, wind_angle:
     """
     checks.positive("air_speed", air_speed)
     checks.within("ground_speed", ground_speed, 0.0, air_speed, "m/s, the air_speed")
+    checks.finite("wind_angle", wind_angle)
     speed, angle = np.asarray(ground_speed, dtype=float), np.asarray(wind_angle, dtype=float)
-    if not np.isfinite(angle).all():
-        raise ValueError(f"wind_angle must be finite, got {angle.tolist()}")
     along, across = speed * np.cos(angle), speed * np.sin(angle)
     return along + np.sqrt(air_speed**2 - across**2)
 

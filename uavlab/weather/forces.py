@@ -5,7 +5,7 @@ newtons, speeds in m/s. Wind is where the air moves to: a vector (east, north) o
 meteorologist's direction, in `Weather`, is where the wind comes from.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +22,9 @@ DROP_SPEED = 9.0
 
 STANDARD_AIR = 1.225
 """Density of dry air at 15 °C and 1013.25 hPa [kg/m³]."""
+
+SAFETY_FACTOR = 1.2
+"""δ of Eq. 2."""
 
 GUST_FACTOR = 1.75
 """Of the strongest gust to the mean wind, in cities typically 1.5 to 2."""
@@ -55,7 +58,7 @@ class Weather:
     Raises
     ------
     ValueError
-        If a value is not finite or out of its range; a pressure in Pa is recognised.
+        If a value is not one finite number or out of its range; a pressure in Pa is recognised.
     """
 
     temperature_c: float = 15.0
@@ -69,6 +72,8 @@ class Weather:
     radiation: float = 0.0
 
     def __post_init__(self) -> None:
+        for item in fields(self):
+            checks.number(item.name, getattr(self, item.name))
         checks.air(self.temperature_c, self.humidity_percent, self.pressure_hpa)
         for name in ("forecast_wind", "forecast_max_wind", "measured_wind", "rain_mm_per_h", "radiation"):
             checks.not_negative(name, getattr(self, name))
@@ -175,7 +180,7 @@ def rain_force(
 
 
 def lift_margin(
-    uav: UAV, rain: npt.ArrayLike = 0.0, *, safety_factor: float = 1.2, as_printed: bool = False
+    uav: UAV, rain: npt.ArrayLike = 0.0, *, safety_factor: float = SAFETY_FACTOR, as_printed: bool = False
 ) -> np.ndarray:
     """Thrust left above what safety asks for, REPARE Eq. 2.
 
@@ -243,6 +248,7 @@ def reference_wind(
         ("measured_mean", measured_mean),
         ("forecast_max", forecast_max),
     ):
+        checks.number(name, value)
         checks.not_negative(name, value)
     checks.at_least_one("gust_factor", gust_factor)
     mean = max(forecast_mean, measured_mean)
@@ -296,7 +302,7 @@ def wind_drag(
     ground_velocity: npt.ArrayLike,
     drag_area: float,
     *,
-    air_density: float = STANDARD_AIR,
+    air_density: npt.ArrayLike = STANDARD_AIR,
     as_printed: bool = False,
 ) -> np.ndarray:
     """Drag of the wind on the body, REPARE Eq. 5.
@@ -309,7 +315,7 @@ def wind_drag(
         Where the air and the UAV move to [m/s].
     drag_area : float
         C·S [m²], above 0.
-    air_density : float
+    air_density : float or (...) array
         ρ [kg/m³], above 0.
     as_printed : bool
         ½ C ρ S V_d, with the ground velocity for V_d: linear in the speed, so not a force, and without the wind.
@@ -327,7 +333,8 @@ def wind_drag(
     checks.positive("drag_area", drag_area)
     checks.positive("air_density", air_density)
     wind, ground_velocity = checks.vectors(wind=wind, ground_velocity=ground_velocity)
+    half = 0.5 * np.asarray(air_density, dtype=float)[..., None] * drag_area
     if as_printed:
-        return 0.5 * air_density * drag_area * ground_velocity
+        return half * ground_velocity
     relative = wind - ground_velocity
-    return 0.5 * air_density * drag_area * np.linalg.norm(relative, axis=-1, keepdims=True) * relative
+    return half * np.linalg.norm(relative, axis=-1, keepdims=True) * relative

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm
 from scipy.signal import lfilter
+from scipy.special import gammainc
 
 from uavlab import checks
 
@@ -21,14 +21,12 @@ FOOT = 0.3048
 LOWEST, HIGHEST = 10 * FOOT, 1000 * FOOT
 """Altitudes between which the low-altitude model holds [m]."""
 
-DRIFT = np.array([[-1.0, 0.0], [1.0, -1.0]])
-"""Two lags in a row, in units of the time scale L/V: white noise enters the first, the first feeds the second."""
-
 OUTPUT = np.array([[np.sqrt(2.0), 0.0], [np.sqrt(3.0), 1.0 - np.sqrt(3.0)], [np.sqrt(3.0), 1.0 - np.sqrt(3.0)]])
 """Gust along, across and vertical from the two lags, in units of its standard deviation."""
 
 STATIONARY = np.array([[0.5, 0.25], [0.25, 0.25]])
-"""Covariance of the two lags when they have run for ever."""
+"""Covariance of two lags in a row when they have run for ever, x₁' = −x₁ + white noise and x₂' = x₁ − x₂, with the
+time in units of the time scale L/V."""
 
 
 class DrydenParameters(NamedTuple):
@@ -181,15 +179,11 @@ def two_lags(normal: np.ndarray, step: float) -> np.ndarray:
 
 
 def lag_step(step: float) -> tuple[np.ndarray, np.ndarray]:
-    """How the two lags go on over a step (in time scales): transition matrix, and covariance of the noise that enters.
+    """How the two lags go on over a step h (in time scales): transition matrix, covariance of the noise that enters.
 
-    Van Loan (1978): one matrix exponential has both. Its blocks grow with the step, and their product loses digits; a
-    long step takes the covariance from what doesn't change, that of the stationary state.
+    What enters the first lag is e⁻ˢ of itself a time s later, and s e⁻ˢ in the second. The covariance is the integral
+    of their products over the step, ∫ sⁿ e⁻²ˢ ds = n!/2ⁿ⁺¹ · P(n + 1, 2h), P the regularised incomplete gamma function.
     """
-    transition = expm(DRIFT * step)
-    if step > 1.0:
-        return transition, STATIONARY - transition @ STATIONARY @ transition.T
-    driving = np.diag([1.0, 0.0])
-    blocks = expm(np.block([[-DRIFT, driving], [np.zeros((2, 2)), DRIFT.T]]) * step)
-    covariance = transition @ blocks[:2, 2:]
-    return transition, (covariance + covariance.T) / 2
+    transition = np.exp(-step) * np.array([[1.0, 0.0], [step, 1.0]])
+    one, two, three = gammainc([1, 2, 3], 2.0 * step)
+    return transition, np.array([[2.0 * one, two], [two, three]]) / 4.0
