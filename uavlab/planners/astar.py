@@ -67,7 +67,7 @@ def astar(
         successor inherits it, so it is no cost of a route: the result depends on the direction of travel, and
         `Route.cost` is the length.
     record : bool
-        Keep the order of expansion in `info["order"]`.
+        Keep the order of expansion in `info["order"]`; it begins at the goal where the price is higher there.
 
     Returns
     -------
