@@ -208,6 +208,24 @@ def east_north(lonlat: npt.ArrayLike, reference: npt.ArrayLike) -> np.ndarray:
     return (earth_centred(lonlat) - earth_centred(reference)) @ np.transpose([east, north])
 
 
+def longitude_latitude(points: npt.ArrayLike, reference: npt.ArrayLike) -> np.ndarray:
+    """Longitude and latitude (..., 2) [degrees] of points (..., 2) [m] east and north of a reference.
+
+    The inverse of `east_north`, by Newton's method with the ellipsoid's two radii of curvature; to a micrometre within
+    100 km.
+    """
+    wanted, lonlat = np.asarray(points, dtype=float), np.asarray(reference, dtype=float)
+    latitude = np.radians(lonlat[1])
+    eccentricity_squared = FLATTENING * (2 - FLATTENING)
+    normal = EQUATORIAL_RADIUS / np.sqrt(1 - eccentricity_squared * np.sin(latitude) ** 2)
+    meridian = normal * (1 - eccentricity_squared) / (1 - eccentricity_squared * np.sin(latitude) ** 2)
+    metres_per_degree = np.radians(1.0) * np.array([normal * np.cos(latitude), meridian])
+    lonlat = lonlat + wanted / metres_per_degree
+    for _ in range(20):
+        lonlat = lonlat + (wanted - east_north(lonlat, reference)) / metres_per_degree
+    return lonlat
+
+
 def earth_centred(lonlat: npt.ArrayLike) -> np.ndarray:
     """Cartesian coordinates (..., 3) [m] of points (..., 2) [degrees] on the ellipsoid WGS84."""
     lon, lat = np.moveaxis(np.radians(np.asarray(lonlat, dtype=float)), -1, 0)

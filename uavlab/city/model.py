@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import ConvexHull
 
 from uavlab.city.buildings import FACE_TOLERANCE, Building
 from uavlab.city.voxels import squared_clearance, voxels_on_segment
@@ -140,6 +141,22 @@ class City:
         np.sqrt(clearance, out=clearance)
         clearance *= self.cell
         return clearance
+
+    @cached_property
+    def height_above_surface(self) -> np.ndarray:
+        """Height of each centre above the next roof below it, else above the floor of the map, (nx, ny, nz) [m].
+
+        0 in an obstacle. Roofs are taken from the buildings, exactly; from the voxels where the city knows none.
+        """
+        levels = self.origin[2] + self.cell * (np.arange(self.shape[2]) + 0.5)
+        if self.buildings:
+            surface = np.full(self.shape, self.origin[2])
+            for building in self.buildings:
+                raise_surface(building, surface, levels, self.cell, self.origin)
+        else:
+            tops = np.where(self.occupied, levels + self.cell / 2, self.origin[2])
+            surface = np.maximum.accumulate(tops, axis=2)
+        return np.where(self.occupied, 0.0, np.maximum(levels - surface, 0.0))
 
     def blocked(self, min_clearance: float) -> np.ndarray:
         """Where a UAV may not be: obstacles, and what is nearer to them than a distance.
@@ -320,10 +337,39 @@ def checked_origin(origin: npt.ArrayLike) -> np.ndarray:
 def rasterise(building: Building, occupied: np.ndarray, cell: float, origin: np.ndarray) -> None:
     """Mark the voxels whose centres lie in the building, in place; what sticks out of the map is cut off."""
     for hull in building.hulls:
-        low = np.clip(np.floor((hull.min_bound - origin) / cell - 0.5).astype(int), 0, occupied.shape)
-        high = np.clip(np.ceil((hull.max_bound - origin) / cell + 0.5).astype(int), 0, occupied.shape)
+        low, high = voxels_around(hull, occupied.shape, cell, origin)
         x, y, z = np.ix_(*(origin[a] + cell * (np.arange(low[a], high[a]) + 0.5) for a in range(3)))
         inside = np.ones(high - low, dtype=bool)
         for a, b, c, d in hull.equations:  # one face after the other, as in Building.contains, for memory's sake
             inside &= a * x + b * y + c * z + d <= FACE_TOLERANCE
         occupied[low[0] : high[0], low[1] : high[1], low[2] : high[2]] |= inside
+
+
+def raise_surface(building: Building, surface: np.ndarray, levels: np.ndarray, cell: float, origin: np.ndarray) -> None:
+    """Raise the surface below each centre (nx, ny, nz) to the building's roofs that lie below it, in place.
+
+    A vertical line meets the face a·x + b·y + c·z + d = 0 of a convex piece at one height, and is inside the piece
+    below all faces that look up (c > 0), above all that look down, and behind those that are vertical.
+    """
+    for hull in building.hulls:
+        low, high = voxels_around(hull, surface.shape, cell, origin)
+        x, y = np.ix_(*(origin[a] + cell * (np.arange(low[a], high[a]) + 0.5) for a in range(2)))
+        roof, floor = np.full(np.broadcast_shapes(x.shape, y.shape), np.inf), np.full((1, 1), -np.inf)
+        for a, b, c, d in hull.equations:
+            behind = a * x + b * y + d
+            if abs(c) <= FACE_TOLERANCE:
+                roof = np.where(behind <= FACE_TOLERANCE, roof, -np.inf)
+            elif c > 0:
+                roof = np.minimum(roof, -behind / c)
+            else:
+                floor = np.maximum(floor, -behind / c)
+        roof = np.where(roof >= floor, roof, -np.inf)[..., None]
+        columns = surface[low[0] : high[0], low[1] : high[1]]
+        np.maximum(columns, np.where(roof <= levels + FACE_TOLERANCE, roof, -np.inf), out=columns)
+
+
+def voxels_around(hull: ConvexHull, shape: Sequence[int], cell: float, origin: np.ndarray) -> tuple[np.ndarray, ...]:
+    """First and, exclusively, last index (3,) of the voxels whose centres may lie in a hull."""
+    low = np.clip(np.floor((hull.min_bound - origin) / cell - 0.5).astype(int), 0, shape)
+    high = np.clip(np.ceil((hull.max_bound - origin) / cell + 0.5).astype(int), 0, shape)
+    return low, high

@@ -94,22 +94,22 @@ def node_at(city: City, point: npt.ArrayLike, argument: str, min_clearance: floa
         ranges = ", ".join(f"{a} {lo:g} to {hi:g}" for a, lo, hi in zip("xyz", low, high, strict=True))
         raise ValueError(f"{argument} {show(position)} lies outside of the map: {ranges} m")
     index = tuple(city.cell_of(position))
+    allowed = ~city.blocked(min_clearance)
     if city.occupied[index]:
         raise ValueError(
             f"{argument} {show(position)} lies in {city.building_at(position)}; "
-            f"{nearest_allowed(city, position, min_clearance)}"
+            f"{nearest_allowed(city, position, allowed)}"
         )
-    if city.blocked(min_clearance)[index]:
+    if not allowed[index]:
         raise ValueError(
             f"{argument} {show(position)} is {city.clearance[index]:.2f} m from the nearest obstacle, "
-            f"min_clearance asks for {min_clearance:g} m; {nearest_allowed(city, position, min_clearance)}"
+            f"min_clearance asks for {min_clearance:g} m; {nearest_allowed(city, position, allowed)}"
         )
     return int(city.code_of(index))
 
 
-def nearest_allowed(city: City, position: np.ndarray, min_clearance: float) -> str:
-    """Words for the centre nearest to a position where the UAV may be, looked for in boxes that grow."""
-    allowed = ~city.blocked(min_clearance)
+def nearest_allowed(city: City, position: np.ndarray, allowed: np.ndarray) -> str:
+    """Words for the centre nearest to a position among allowed voxels (nx, ny, nz), looked for in boxes that grow."""
     index = city.cell_of(position)
     radius = 4
     while True:

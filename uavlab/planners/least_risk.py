@@ -1,0 +1,439 @@
+"""The exact optimum on a risk map, under limits on turns, climb and length: the yardstick for every other planner.
+
+A limit on turns makes the way to a voxel matter, so a state is a node and a heading: nine times as many as nodes. First
+a Dijkstra search backwards from the goal, over nodes and without headings, gives the exact rest of the cost where turns
+are free. That never says too much, so it is an estimate for A* over the states, and nearly always the right one: the
+second search walks almost straight to the goal. With a limit on the length too, a state may be reached in
+several ways that are worth keeping, cheaper or shorter; each is a label.
+"""
+
+import heapq
+import time
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.compiled import compiled
+from uavlab.planners.astar import ROUNDING, TIE_BREAK
+from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, endpoints, nearest_allowed, show
+from uavlab.planners.heap import open_list, pop, push, room
+from uavlab.risk import RiskMap
+from uavlab.route import Route
+
+MAX_TURN = MAX_PITCH = np.pi / 3
+"""Greatest change of heading at a waypoint and greatest climb or descent of a leg [rad] (RISK-ACO 3.2 and 4)."""
+
+HEADINGS = 8
+NO_HEADING = HEADINGS  # before the first leg that isn't vertical
+STATES = HEADINGS + 1
+
+MOVE_HEADING = np.where(
+    (MOVES[:, :2] == 0).all(axis=1), NO_HEADING, np.round(np.arctan2(MOVES[:, 1], MOVES[:, 0]) / (np.pi / 4)) % HEADINGS
+).astype(np.int64)
+"""Heading of each move (26,), in eighths of a turn from east; a vertical move has none."""
+
+MOVE_PITCH = np.abs(np.arctan2(MOVES[:, 2], np.hypot(MOVES[:, 0], MOVES[:, 1])))
+
+
+def least_risk(
+    risk_map: RiskMap,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    *,
+    risk: float = 1.0,
+    length: float = 0.0,
+    threat: float = 0.0,
+    max_turn: float = MAX_TURN,
+    max_pitch: float = MAX_PITCH,
+    max_length: float | None = None,
+    min_clearance: float = 0.0,
+    drift: bool = False,
+    heuristic: str = "backward",
+) -> Route:
+    """The route of least cost among all over 26 neighbours that keep the limits.
+
+    cost = w_r·∫ r ds/dx + w_l·L + w_s·∫ threat ds/dx with the weights `risk` [h], `length` [1/m] and `threat` [1/m].
+    Of routes that cost the same, the one is taken that the search finds first, and its order is fixed.
+
+    Parameters
+    ----------
+    risk_map : RiskMap
+        Its `flyable` voxels are the ones to choose from.
+    start, goal : (3,) arrays
+        Positions [m]. The route goes from the centre of the start's voxel to the centre of the goal's.
+    risk, length, threat : float
+        Weights, at least 0 and not all of them 0. (1, 0, 0) minimises risk; (0, 1, 0) is risk-blind and shortest;
+        (0, 0.5, 0.2) is J0, what the papers minimise when they leave risk aside.
+    max_turn : float
+        Greatest change of heading from leg to leg [rad]. Legs turn by multiples of 45°, so 60° means 45°. A vertical
+        leg keeps the heading of the leg before.
+    max_pitch : float
+        Greatest climb or descent of a leg [rad]: from 35.3° on through corners, from 45° on through edges, at 90°
+        vertical.
+    max_length : float, optional
+        Greatest length [m].
+    min_clearance : float
+        Least clearance [m], see `City.clearance`.
+    drift : bool
+        Take the risk where the wreck lands, ahead of the UAV, see `RiskMap.rate_ahead`.
+    heuristic : {"backward", "zero"}
+        Estimate of the remaining cost: Dijkstra backwards without headings; none (plain Dijkstra over the states).
+
+    Returns
+    -------
+    Route
+        `cost` as above; `info["expanded"]`, nodes and states expanded by both searches; `info["elapsed"]` [s]. Where
+        no route keeps the limits `reached` is False, and `reason` says which limit to loosen.
+
+    Raises
+    ------
+    ValueError
+        If start or goal can't be flown from or to, or an argument is out of its range.
+    """
+    began = time.perf_counter()
+    if heuristic not in ("backward", "zero"):
+        raise ValueError(f"heuristic must be 'backward' or 'zero', got {heuristic!r}")
+    if max_length is not None:
+        checks.number("max_length", max_length)
+        checks.positive("max_length", max_length)
+    limits = checked_limits(max_turn, max_pitch, min_clearance)
+    price = price_per_cell(risk_map, risk, length, threat, drift)
+    source, target = flyable_endpoints(risk_map, start, goal, min_clearance)
+    query = query_of(risk_map, price, source, target, limits)
+    if max_length is None:
+        nodes, cost, expanded = solve(query, heuristic == "backward")
+    else:
+        routes, expanded = constrained(query, city_lengths(query), np.array([max_length / risk_map.city.cell]))
+        nodes, cost = routes[0] if routes else (np.empty(0, np.int64), np.inf)
+    info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
+    if len(nodes) == 0:
+        reason = f"no route from {show(start)} to {show(goal)}: {what_binds(risk_map, query, limits, max_length)}"
+        return Route(np.empty((0, 3)), "least risk", reached=False, reason=reason, cost=np.inf, info=info)
+    city = risk_map.city
+    return Route(city.center_of(city.index_of(nodes)), "least risk", cost=cost, info=info)
+
+
+def pareto_front(
+    risk_map: RiskMap,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    *,
+    lengths: int | npt.ArrayLike = 12,
+    max_turn: float = MAX_TURN,
+    max_pitch: float = MAX_PITCH,
+    min_clearance: float = 0.0,
+    drift: bool = False,
+) -> list[Route]:
+    """The least risk for each length that one is ready to fly, exactly (ε-constraint method).
+
+    Parameters
+    ----------
+    risk_map, start, goal, max_turn, max_pitch, min_clearance, drift
+        As for `least_risk`.
+    lengths : int or array
+        Greatest lengths to ask for [m]; or how many, spread evenly from the shortest route's to that of the route of
+        least risk.
+
+    Returns
+    -------
+    list of Route
+        From short and risky to long and safe, each with its risk ∫ r ds/dx as `cost`. No route is both longer and
+        riskier than another, so there may be fewer than lengths asked for; lengths below the shortest route's give
+        none. One route with `reached` False where the limits leave no route at all.
+
+    Raises
+    ------
+    ValueError
+        If start or goal can't be flown from or to, or an argument is out of its range.
+    """
+    began = time.perf_counter()
+    limits = checked_limits(max_turn, max_pitch, min_clearance)
+    source, target = flyable_endpoints(risk_map, start, goal, min_clearance)
+    query = query_of(risk_map, price_per_cell(risk_map, 1.0, 0.0, 0.0, drift), source, target, limits)
+    by_length = city_lengths(query)
+    city = risk_map.city
+    shortest, least, _ = solve(by_length, True)
+    if len(shortest) == 0:
+        return [least_risk(risk_map, start, goal, max_turn=max_turn, max_pitch=max_pitch, min_clearance=min_clearance)]
+    if isinstance(lengths, int | np.integer):
+        checks.whole("lengths", int(lengths), least=2)
+        safest, _, _ = solve(query, True)
+        longest = np.linalg.norm(np.diff(city.index_of(safest), axis=0), axis=1).sum()
+        asked = np.linspace(least, longest, int(lengths))
+    else:
+        checks.positive("lengths", lengths)
+        asked = np.atleast_1d(checks.numbers("lengths", lengths)) / city.cell
+    routes, expanded = constrained(query, by_length, np.unique(asked))
+    info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
+    return [
+        Route(city.center_of(city.index_of(nodes)), "least risk", cost=cost, info=dict(info)) for nodes, cost in routes
+    ]
+
+
+class Limits(NamedTuple):
+    """What a route must keep."""
+
+    max_turn: float
+    max_pitch: float
+    min_clearance: float
+    heights: bool = True  # the map's safe_height and lowest_height
+
+
+class Query(NamedTuple):
+    """A question as arrays, for compiled code."""
+
+    blocked: np.ndarray  # (nx, ny, nz) bool
+    price: np.ndarray  # (1 or 26, nx·ny·nz): cost per cell of way, the same for all moves or for each
+    climb: np.ndarray  # (26,) bool: whether a move is flat enough
+    turn: np.ndarray  # (STATES, 26) bool: whether a move may follow a heading
+    source: int
+    target: int
+
+
+def query_of(risk_map: RiskMap, price: np.ndarray, source: int, target: int, limits: Limits) -> Query:
+    """The question with these limits; heading NO_HEADING allows every move, and so does a vertical move."""
+    open_air = risk_map.flyable if limits.heights else ~risk_map.city.occupied
+    apart = np.abs(MOVE_HEADING - np.arange(STATES)[:, None]) * np.pi / 4
+    turn = np.minimum(apart, 2 * np.pi - apart) <= limits.max_turn + 1e-9
+    turn[NO_HEADING] = turn[:, MOVE_HEADING == NO_HEADING] = True
+    blocked = ~open_air | risk_map.city.blocked(limits.min_clearance)
+    return Query(blocked, price, limits.max_pitch + 1e-9 >= MOVE_PITCH, turn, source, target)
+
+
+def city_lengths(query: Query) -> Query:
+    """The same question with the length [cells] as the cost."""
+    return query._replace(price=np.ones((1, query.blocked.size)))
+
+
+def price_per_cell(risk_map: RiskMap, risk: float, length: float, threat: float, drift: bool) -> np.ndarray:
+    """Cost per cell of way in each voxel, (1 or 26, nx·ny·nz)."""
+    for name, weight in (("risk", risk), ("length", length), ("threat", threat)):
+        checks.number(name, weight)
+        checks.not_negative(name, weight)
+    if risk == length == threat == 0:
+        raise ValueError("risk, length and threat are all 0: give at least one of them a weight above 0")
+    price = np.full((1, *risk_map.city.shape), length * risk_map.city.cell)
+    if risk > 0:
+        price = price + risk * (risk_map.rate_ahead if drift else risk_map.rate)
+    if threat > 0:
+        price = price + threat * risk_map.threat
+    return price.reshape(len(price), -1)
+
+
+def checked_limits(max_turn: float, max_pitch: float, min_clearance: float) -> Limits:
+    for name, angle, most in (("max_turn", max_turn, np.pi), ("max_pitch", max_pitch, np.pi / 2)):
+        checks.number(name, angle)
+        checks.within(name, angle, 0.0, most + 1e-9, "rad (from degrees: numpy.radians)")
+    return Limits(max_turn, max_pitch, min_clearance)
+
+
+def flyable_endpoints(
+    risk_map: RiskMap, start: npt.ArrayLike, goal: npt.ArrayLike, min_clearance: float
+) -> tuple[int, int]:
+    """Codes of the start's and the goal's voxel; `ValueError` if the UAV may not fly there."""
+    city = risk_map.city
+    codes = endpoints(city, start, goal, min_clearance)
+    for name, code, point in zip(("start", "goal"), codes, (start, goal), strict=True):
+        if not risk_map.flyable.flat[code]:
+            above = city.height_above_surface.flat[code]
+            allowed = risk_map.flyable & ~city.blocked(min_clearance)
+            raise ValueError(
+                f"{name} {show(point)} is too low: its voxel's centre is {above:.1f} m above what lies below, "
+                f"safe_height asks for {risk_map.safe_height:g} m and lowest_height for {risk_map.lowest_height:g} m "
+                f"above the ground; {nearest_allowed(city, np.asarray(point, float), allowed)}"
+            )
+    return codes
+
+
+def what_binds(risk_map: RiskMap, query: Query, limits: Limits, max_length: float | None) -> str:
+    """Words for the limits that leave no route: those that alone, if loosened, would open one, and how far."""
+    price = city_lengths(query).price
+
+    def shortest(loosened: Limits) -> float:
+        loose = query_of(risk_map, price, query.source, query.target, loosened)
+        return solve(loose, True)[1] * risk_map.city.cell
+
+    if max_length is not None and np.isfinite(shortest(limits)):
+        return f"max_length is {max_length:g} m, the shortest route has {shortest(limits):.2f} m"
+    cures = []
+    for name, values in (("max_turn", (45, 90, 135, 180)), ("max_pitch", (35.27, 45, 90))):
+        for degrees in values:
+            if np.isfinite(shortest(limits._replace(**{name: np.radians(degrees)}))):
+                cures.append(f"max_turn={degrees}°".replace("max_turn", name))
+                break
+    if limits.min_clearance > 0 and np.isfinite(shortest(limits._replace(min_clearance=0.0))):
+        cures.append(f"less min_clearance than {limits.min_clearance:g} m")
+    if np.isfinite(shortest(limits._replace(heights=False))):
+        cures.append(f"less safe_height than {risk_map.safe_height:g} m or lowest_height {risk_map.lowest_height:g} m")
+    if cures:
+        return "there would be one with " + ", or with ".join(cures)
+    if np.isfinite(shortest(Limits(np.pi, np.pi / 2, 0.0, heights=False))):
+        return "no limit alone closes the way; max_turn, max_pitch, min_clearance and the heights do it together"
+    return "obstacles close every way"
+
+
+def solve(query: Query, backward: bool) -> tuple[np.ndarray, float, int]:
+    """Nodes of the cheapest route (none if there is none), its cost, and how many expansions it took."""
+    count = query.blocked.size
+    rest, expanded = np.zeros(count), 0
+    if backward:
+        rest, expanded = rest_of_cost(query, query.source, open_list(count))
+        if rest[query.source] == np.inf:
+            return np.empty(0, np.int64), np.inf, expanded
+    g = room(np.empty, count * STATES, np.float64)
+    parent = room(np.zeros, count * STATES, np.uint8)
+    last, more = search_states(query, rest, g, parent, open_list(count * STATES))
+    if last < 0:
+        return np.empty(0, np.int64), np.inf, expanded + more
+    return trace(query, parent, last), float(g[last]), expanded + more
+
+
+def constrained(query: Query, by_length: Query, limits: np.ndarray) -> tuple[list[tuple[np.ndarray, float]], int]:
+    """For each greatest length [cells] the nodes and the cost of the cheapest route, shortest first, each once."""
+    count = query.blocked.size
+    rest, expanded = rest_of_cost(query, NOWHERE, open_list(count))
+    rest_length, more = rest_of_cost(by_length, NOWHERE, open_list(count))
+    states, before, cost, found = search_labels(query, rest, rest_length, limits)
+    routes = []
+    for label in found[::-1]:
+        nodes = []
+        at = label
+        while at >= 0:
+            nodes.append(states[at] // STATES)
+            at = before[at]
+        routes.append((np.array(nodes[::-1]), float(cost[label])))
+    return routes, expanded + more + len(states)
+
+
+NOWHERE = -1
+UNSEEN, START = 0, 255  # values of `parent`; between them 1 + move·STATES + the heading before
+
+
+@compiled
+def edge(query, move, node, neighbour):
+    """Cost of a move from a node to its neighbour [cells]: half of the way in each, as the exact integral has it."""
+    row = move if query.price.shape[0] > 1 else 0
+    return LENGTHS[move] * 0.5 * (query.price[row, node] + query.price[row, neighbour])
+
+
+@compiled
+def rest_of_cost(query, until, waiting):
+    """Least cost from every node to the goal where turns are free: Dijkstra backwards from the goal.
+
+    It stops when the node `until` is reached; farther nodes then get the cost of that one, which is not too much.
+    Returns the costs, infinite where no way leads to the goal, and how many nodes were expanded.
+    """
+    ny, nz = query.blocked.shape[1], query.blocked.shape[2]
+    steps = (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
+    rest = np.full(query.blocked.size, np.inf)
+    rest[query.target] = 0.0
+    expanded = 0
+    push(waiting, query.target, 0.0)
+    while waiting.size[0] > 0:
+        node = pop(waiting)
+        if node == until:
+            return np.minimum(rest, rest[node]), expanded
+        expanded += 1
+        around = blocked_around(query.blocked, node // (ny * nz), node // nz % ny, node % nz)
+        for back in range(26):
+            move = 25 - back  # the moves stand in an order in which opposite ones mirror each other
+            if around & BOXES[back] or not query.climb[move]:
+                continue
+            neighbour = node + steps[back]
+            cost = rest[node] + edge(query, move, neighbour, node)
+            if cost < rest[neighbour] * ROUNDING:
+                rest[neighbour] = cost
+                push(waiting, neighbour, cost)
+    return rest, expanded
+
+
+@compiled
+def search_states(query, rest, g, parent, waiting):
+    """A* over states, node·STATES + heading, until one at the goal is expanded: that state, or −1, and the count."""
+    ny, nz = query.blocked.shape[1], query.blocked.shape[2]
+    steps = (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
+    first = query.source * STATES + NO_HEADING
+    expanded = 0
+    g[first] = 0.0
+    parent[first] = START
+    push(waiting, first, 0.0)
+    while waiting.size[0] > 0:
+        state = pop(waiting)
+        node, heading = state // STATES, state % STATES
+        if node == query.target:
+            return state, expanded
+        expanded += 1
+        around = blocked_around(query.blocked, node // (ny * nz), node // nz % ny, node % nz)
+        for move in range(26):
+            if around & BOXES[move] or not query.climb[move] or not query.turn[heading, move]:
+                continue
+            neighbour = node + steps[move]
+            cost = g[state] + edge(query, move, node, neighbour)
+            follower = neighbour * STATES + (heading if MOVE_HEADING[move] == NO_HEADING else MOVE_HEADING[move])
+            if parent[follower] == UNSEEN or cost < g[follower] * ROUNDING:
+                g[follower] = cost
+                parent[follower] = 1 + move * STATES + heading
+                push(waiting, follower, cost + TIE_BREAK * rest[neighbour])
+    return -1, expanded
+
+
+def trace(query: Query, parent: np.ndarray, last: int) -> np.ndarray:
+    """Nodes from the start to the last state, back along the moves that led there."""
+    steps = MOVES @ np.array([query.blocked.shape[1] * query.blocked.shape[2], query.blocked.shape[2], 1])
+    nodes = [last // STATES]
+    state = last
+    while parent[state] != START:
+        move, heading = divmod(int(parent[state]) - 1, STATES)
+        nodes.append(nodes[-1] - int(steps[move]))
+        state = nodes[-1] * STATES + heading
+    return np.array(nodes[::-1])
+
+
+@compiled
+def search_labels(query, rest, rest_length, limits):
+    """Cheapest routes not longer than each of the limits [cells], by labels: ways to a state, cheaper or shorter.
+
+    Labels are expanded in order of cost + rest. Of two at one state the later one costs more, so it is worth
+    keeping only if it is shorter. The first label at the goal is the cheapest route within the largest limit; from
+    then on only shorter ones are of interest, for the next smaller limit. Returns state, predecessor and
+    cost of all labels, and those found at the goal, longest first.
+    """
+    ny, nz = query.blocked.shape[1], query.blocked.shape[2]
+    steps = (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
+    shortest = np.full(query.blocked.size * STATES, np.inf)  # of the labels expanded at each state
+    states, before, costs, lengths = [query.source * STATES + NO_HEADING], [-1], [0.0], [0.0]
+    found = [-1]
+    limit = limits[-1] / ROUNDING
+    waiting = [(rest[query.source], rest_length[query.source], 0)]
+    while len(waiting) > 0:
+        _, least, label = heapq.heappop(waiting)
+        state, length = states[label], lengths[label]
+        node, heading = state // STATES, state % STATES
+        if least > limit or length >= shortest[state] * ROUNDING:
+            continue
+        shortest[state] = length
+        if node == query.target:
+            found.append(label)
+            shorter = limits[limits < length * ROUNDING]
+            if len(shorter) == 0:
+                break
+            limit = shorter[-1] / ROUNDING
+            continue
+        around = blocked_around(query.blocked, node // (ny * nz), node // nz % ny, node % nz)
+        for move in range(26):
+            if around & BOXES[move] or not query.climb[move] or not query.turn[heading, move]:
+                continue
+            neighbour = node + steps[move]
+            follower = neighbour * STATES + (heading if MOVE_HEADING[move] == NO_HEADING else MOVE_HEADING[move])
+            way = length + LENGTHS[move]
+            if way + rest_length[neighbour] > limit or way >= shortest[follower] * ROUNDING:
+                continue
+            cost = costs[label] + edge(query, move, node, neighbour)
+            states.append(follower)
+            before.append(label)
+            costs.append(cost)
+            lengths.append(way)
+            heapq.heappush(waiting, (cost + rest[neighbour], way + rest_length[neighbour], len(states) - 1))
+    return np.array(states), np.array(before), np.array(costs), np.array(found[1:])

@@ -1,0 +1,195 @@
+"""Layers of the ground for any city: population from a raster, cars from road lines, shelter from what stands there.
+
+Each gives one number per column of voxels, (nx, ny), for `RiskMap`. A raster is read at the columns' centres; roads
+count by the share of a column that they cover, so that narrow roads on coarse maps keep their cars.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.city.geojson import east_north, longitude_latitude
+from uavlab.risk.rates import CARS_PER_KM, LANE_WIDTH, SHELTER, vehicle_share
+
+HIGH_BUILDING = 10.0
+"""From this height on [m] a building counts as high; the papers draw no line."""
+
+
+def raster_layer(
+    city: City,
+    values: npt.ArrayLike,
+    bounds: Sequence[float],
+    *,
+    geographic: bool = False,
+    fill: float | None = None,
+) -> np.ndarray:
+    """Values of a raster at the columns of a city.
+
+    Parameters
+    ----------
+    city : City
+    values : (rows, columns) array
+        As in a picture: the first row lies in the north, the first column in the west. NaN is "no data". For
+        `RiskMap(population_density=...)` in people per m²: divide counts by the area of a pixel.
+    bounds : (west, south, east, north)
+        Of the whole raster: in metres of the city, or in degrees.
+    geographic : bool
+        Bounds are longitudes and latitudes on WGS84; the city must know its `reference`.
+    fill : float, optional
+        What to take where the raster says nothing; without it that is an error.
+
+    Returns
+    -------
+    (nx, ny) array
+
+    Raises
+    ------
+    ValueError
+        If `values` isn't two-dimensional, bounds are not in order, the city has no reference for degrees, or the raster
+        doesn't cover the city and there is no `fill`.
+    """
+    raster = checks.numbers("values", values)
+    if raster.ndim != 2 or raster.size == 0:
+        raise ValueError(f"values must have shape (rows, columns), got {raster.shape}")
+    edges = checks.numbers("bounds", bounds)
+    if edges.shape != (4,) or not (np.isfinite(edges).all() and edges[0] < edges[2] and edges[1] < edges[3]):
+        raise ValueError(f"bounds must be (west, south, east, north) in increasing order, got {bounds!r}")
+    points = column_centers(city)
+    if geographic:
+        points = longitude_latitude(points, checked_reference(city))
+    west, south, east, north = edges
+    column = np.floor((points[..., 0] - west) / (east - west) * raster.shape[1]).astype(int)
+    row = np.floor((north - points[..., 1]) / (north - south) * raster.shape[0]).astype(int)
+    inside = (column >= 0) & (column < raster.shape[1]) & (row >= 0) & (row < raster.shape[0])
+    layer = np.full(city.shape[:2], np.nan)
+    layer[inside] = raster[row[inside], column[inside]]
+    missing = np.isnan(layer)
+    if missing.any() and fill is None:
+        raise ValueError(
+            f"values say nothing about {missing.mean():.0%} of the city's columns (outside of bounds, or no data); "
+            "give a larger raster, or say with fill what to take there"
+        )
+    if fill is not None:
+        layer[missing] = fill
+    return layer
+
+
+def road_layer(
+    city: City,
+    lines: Sequence[npt.ArrayLike],
+    width: float | Sequence[float],
+    *,
+    cars_per_km: float | Sequence[float] = CARS_PER_KM,
+    lane_width: float = LANE_WIDTH,
+    geographic: bool = False,
+) -> np.ndarray:
+    """Share of the ground that cars cover, from the middle lines of roads: for `RiskMap(vehicle_share=...)`.
+
+    Parameters
+    ----------
+    city : City
+    lines : sequence of (M, 2) arrays
+        Middle line of each road, x and y [m].
+    width : float, or one for each line
+        Of the roadway [m], above 0.
+    cars_per_km : float, or one for each line
+        K, cars per kilometre of a lane, at least 0.
+    lane_width : float
+        D_road [m], above 0.
+    geographic : bool
+        Lines are longitudes and latitudes on WGS84; the city must know its `reference`.
+
+    Returns
+    -------
+    (nx, ny) array
+        C·(share of the column that roads cover). Where roads overlap, the busier counts.
+
+    Raises
+    ------
+    ValueError
+        If a line hasn't shape (M, 2) with M of at least 2, a number is out of its range, or the city has no reference
+        for degrees.
+    """
+    widths, densities = (
+        per_line(name, value, len(lines)) for name, value in (("width", width), ("cars_per_km", cars_per_km))
+    )
+    checks.positive("width", widths)
+    covered = vehicle_share(densities, lane_width)
+    centers, half = column_centers(city).reshape(-1, 2), city.cell / 2
+    columns = shapely.box(*(centers - half).T, *(centers + half).T)
+    layer = np.zeros(len(columns))
+    left = columns
+    for number in np.argsort(-covered, kind="stable"):  # the busiest first: what it covers is taken
+        line = checks.numbers(f"lines[{number}]", lines[number])
+        if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
+            raise ValueError(f"lines[{number}] must be at least two finite points (M, 2), got shape {line.shape}")
+        if geographic:
+            line = east_north(line, checked_reference(city))
+        roadway = shapely.LineString(line).buffer(widths[number] / 2, cap_style="flat", join_style="mitre")
+        near = np.flatnonzero(shapely.intersects(columns, roadway))
+        layer[near] += covered[number] * shapely.area(shapely.intersection(left[near], roadway)) / city.cell**2
+        left[near] = shapely.difference(left[near], roadway)
+    return np.minimum(layer, 1.0).reshape(city.shape[:2])
+
+
+def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = HIGH_BUILDING) -> np.ndarray:
+    """Shelter p_s of each column: 0.5 under low buildings, 0.75 under high ones, as given elsewhere.
+
+    Parameters
+    ----------
+    city : City
+    ground : name, number, or (nx, ny) array of either
+        Open ground: "none", "sparse trees", "trees or low buildings", "high buildings", "industry" (PSO-BAS
+        Table 1), or p_s itself.
+    high : float
+        Height of roofs above the ground from which a building counts as high [m].
+
+    Returns
+    -------
+    (nx, ny) array
+
+    Raises
+    ------
+    ValueError
+        If a name is none of Table 1's, a number not in [0, 1], or the shape not the city's ground plan.
+    """
+    checks.not_negative("high", high)
+    open_ground = np.asarray(ground)
+    if open_ground.dtype.kind == "U":
+        unknown = sorted(set(open_ground.ravel().tolist()) - set(SHELTER))
+        if unknown:
+            raise ValueError(f"ground must be one of {', '.join(map(repr, SHELTER))}, got {unknown[0]!r}")
+        open_ground = np.vectorize(SHELTER.__getitem__, otypes=[float])(open_ground)
+    open_ground = checks.numbers("ground", open_ground)
+    checks.within("ground", open_ground, 0.0, 1.0, "(0 none, 1 industry)")
+    if open_ground.shape not in ((), city.shape[:2]):
+        raise ValueError(f"ground must have the city's ground plan {city.shape[:2]}, got {open_ground.shape}")
+    roof = city.cell * np.max(np.where(city.occupied, np.arange(1, city.shape[2] + 1), 0), axis=2)
+    built = np.where(roof >= high, SHELTER["high buildings"], SHELTER["trees or low buildings"])
+    return np.where(roof > 0, built, open_ground)
+
+
+def column_centers(city: City) -> np.ndarray:
+    """Centres (nx, ny, 2) of the columns of voxels, x and y [m]."""
+    x, y = (city.origin[a] + city.cell * (np.arange(city.shape[a]) + 0.5) for a in range(2))
+    return np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+
+
+def checked_reference(city: City) -> tuple[float, float]:
+    if city.reference is None:
+        raise ValueError(
+            f"geographic=True needs a projection, but {city.name!r} doesn't know where on Earth it lies: read it from "
+            "a file in degrees, set City.reference to the (longitude, latitude) of x = y = 0, or give metres"
+        )
+    return city.reference
+
+
+def per_line(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:
+    numbers = checks.numbers(name, value)
+    if numbers.shape not in ((), (count,)):
+        raise ValueError(f"{name} must be one number or one for each of the {count} lines, got shape {numbers.shape}")
+    return np.broadcast_to(numbers, (count,))

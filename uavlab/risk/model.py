@@ -1,0 +1,181 @@
+"""The risk map: deaths per hour of flight in each voxel, and what a route costs on it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.risk.drift import landing_rate
+from uavlab.risk.rates import person_rate, vehicle_rate
+from uavlab.risk.threat import building_threat
+from uavlab.route import Route
+from uavlab.vehicle import RISK_QUADROTOR, UAV
+
+SAFE_HEIGHT = 3.0
+"""H_safe [m] (PSO-BAS Table 2): least height above what lies below."""
+
+
+@dataclass(frozen=True, eq=False)
+class RiskMap:
+    """Ground risk over a city: layers of the ground, and the rates that follow from them.
+
+    Attributes
+    ----------
+    city : City
+    population_density : (nx, ny) array, or one number for all
+        ρ [1/m²], at least 0; 0.03 is 30 000 per km².
+    shelter : (nx, ny) array, or one number
+        p_s, 0 (none) to 1 (industry), see `SHELTER`.
+    vehicle_share : (nx, ny) array, or one number
+        C, share of the ground that cars cover, see `road_layer` and `vehicle_share`; 0 off the roads.
+    uav : UAV
+        What falls down; at its cruise speed.
+    safe_height : float
+        H_safe [m], the least height above the roof or ground below.
+    lowest_height : float
+        Least height above the ground, whatever is below [m].
+    as_printed : bool
+        With the papers' fall speed (half the exponent).
+
+    Raises
+    ------
+    ValueError
+        If a layer has another shape than the city's ground plan, a density is negative, a shelter not in [0, 1].
+    """
+
+    city: City
+    population_density: np.ndarray
+    shelter: np.ndarray
+    vehicle_share: np.ndarray = 0.0  # type: ignore[assignment]
+    uav: UAV = RISK_QUADROTOR
+    safe_height: float = SAFE_HEIGHT
+    lowest_height: float = 0.0
+    as_printed: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("population_density", "shelter", "vehicle_share"):
+            object.__setattr__(self, name, checked_layer(self.city, name, getattr(self, name)))
+        checks.not_negative("population_density [1/m²]", self.population_density)
+        checks.within("shelter", self.shelter, 0.0, 1.0, "(0 none, 1 industry)")
+        checks.within("vehicle_share", self.vehicle_share, 0.0, 1.0, "of the ground")
+        for name in ("safe_height", "lowest_height"):
+            checks.number(name, getattr(self, name))
+            checks.not_negative(name, getattr(self, name))
+
+    def __repr__(self) -> str:
+        return f"<RiskMap of {self.city.name}: {' × '.join(map(str, self.city.shape))} voxels of {self.city.cell:g} m>"
+
+    @cached_property
+    def person_rate(self) -> np.ndarray:
+        """P1, deaths of people on the ground per hour of flight, (nx, ny, nz) [1/h]."""
+        population, shelter = self.population_density[..., None], self.shelter[..., None]
+        return person_rate(self.city.height_above_surface, population, shelter, self.uav, as_printed=self.as_printed)
+
+    @cached_property
+    def vehicle_rate(self) -> np.ndarray:
+        """P2, deaths in cars per hour of flight, (nx, ny) [1/h]; the same at all heights."""
+        return vehicle_rate(self.vehicle_share)
+
+    @cached_property
+    def rate(self) -> np.ndarray:
+        """r = P1 + P2, (nx, ny, nz) [1/h]."""
+        return self.person_rate + self.vehicle_rate[..., None]
+
+    @cached_property
+    def threat(self) -> np.ndarray:
+        """Threat of the buildings, (nx, ny, nz) [m], see `building_threat`."""
+        return building_threat(self.city)
+
+    @cached_property
+    def flyable(self) -> np.ndarray:
+        """Free voxels that are `safe_height` above what lies below and `lowest_height` above the ground, bool."""
+        ground = self.city.cell * (np.arange(self.city.shape[2]) + 0.5)
+        high_enough = self.city.height_above_surface >= self.safe_height - 1e-9
+        return ~self.city.occupied & high_enough & (ground >= self.lowest_height - 1e-9)
+
+    @cached_property
+    def rate_ahead(self) -> np.ndarray:
+        """Rate where the wreck lands, for each of the 26 moves, (26, nx, ny, nz) [1/h].
+
+        The UAV flies at cruise speed in the direction of the move (`uavlab.planners.grid.MOVES`) and fails at the
+        voxel's centre; its ballistic fall ends on the ground, on a roof or against a wall.
+        """
+        index = np.argwhere(np.ones(self.city.shape, dtype=bool))
+        moves = np.argwhere(np.ones((3, 3, 3), dtype=bool)) - 1
+        moves = moves[(moves != 0).any(axis=1)]
+        return np.stack([landing_rate(self, index, move).reshape(self.city.shape) for move in moves])
+
+    def integral(self, route: Route, *, drift: bool = False) -> float:
+        """∫ r ds / dx, the cost that planners minimise [1/h]: by exact voxel traversal, diagonals at their length.
+
+        Divided by the edge dx of a voxel it is on the scale of the papers' sums over cells.
+
+        Parameters
+        ----------
+        route : Route
+        drift : bool
+            Take the rate where the wreck lands that fails while it flies along the route, see `rate_ahead`.
+
+        Raises
+        ------
+        ValueError
+            If the route leaves the map.
+        """
+        below = route.integral(self.city, self.rate) / self.city.cell
+        if not drift:
+            return below
+        total = 0.0
+        for start, end in pairwise(route.points):
+            index, length = self.city.voxels_along(np.array([start, end]))
+            total += float(landing_rate(self, index, end - start) @ length) if (end != start).any() else 0.0
+        return total / self.city.cell
+
+    def cell_sum(self, route: Route) -> float:
+        """Σ r over the voxels that the route passes, as printed (RISK-ACO Eq. 3, PSO-BAS Eq. 1) [1/h].
+
+        Each voxel counts once, however long the way in it: diagonals come free, and halving the voxels doubles it.
+
+        Raises
+        ------
+        ValueError
+            If the route leaves the map.
+        """
+        city = self.city
+        route.integral(city, self.rate)  # refuses a route that leaves the map
+        index, length = city.voxels_along(route.points)
+        passed = np.unique(city.code_of(index[length > 1e-9 * city.cell]))
+        return float(self.rate.ravel()[passed].sum())
+
+    def fatalities(self, route: Route, speed: float | None = None) -> float:
+        """Expected deaths per mission, ∫ r ds / (3600 V).
+
+        Parameters
+        ----------
+        route : Route
+        speed : float, optional
+            V over ground [m/s], above 0; the UAV's cruise speed by default.
+
+        Raises
+        ------
+        ValueError
+            If the speed is not above 0, or the route leaves the map.
+        """
+        speed = self.uav.cruise_speed if speed is None else speed
+        checks.number("speed", speed)
+        checks.positive("speed", speed)
+        return route.integral(self.city, self.rate) / (3600 * speed)
+
+
+def checked_layer(city: City, name: str, values: npt.ArrayLike) -> np.ndarray:
+    """A layer as floats (nx, ny); one number holds for the whole ground plan."""
+    layer = checks.numbers(name, values)
+    if layer.shape not in ((), city.shape[:2]):
+        raise ValueError(
+            f"{name} must have the shape of the city's ground plan {city.shape[:2]} or be one number, "
+            f"got {layer.shape}; raster_layer and road_layer bring others onto it"
+        )
+    return np.broadcast_to(layer, city.shape[:2])

@@ -1,0 +1,178 @@
+"""From a failure to a rate: deaths per hour of flight over a place (RISK-ACO Eqs 4-10, PSO-BAS Eqs 2-8).
+
+r = P1 + P2. P1, people hit: failures per hour × people in the lethal area × the chance that the blow kills, which
+depends on its energy and on what shelters them. P2, cars hit: failures per hour × share of the road that is covered
+by cars × deaths per crash.
+"""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import expit
+
+from uavlab import checks
+from uavlab.risk.fall import AIR_DENSITY, ballistic_fall, fall_speed, impact_energy, lethal_area
+from uavlab.vehicle import RISK_QUADROTOR, UAV
+
+FAILURE_RATE = 6.4e-5
+"""f_c (RISK-ACO), f_G (PSO-BAS Table 2) [1/h]: falls out of the sky per hour of flight."""
+
+POPULATION_DENSITY = 30_000e-6
+"""ρ [1/m²]: 30 000 people per km² (RISK-ACO and PSO-BAS Table 2)."""
+
+EVEN_ODDS_ENERGY = 1e6
+"""α [J]: kills in half of the cases behind shelter 0.5. Missing in both papers' tables; 1 MJ is the value of the
+literature that the formula comes from (Dalamagkidis, Valavanis and Piegl 2012)."""
+
+LEAST_FATAL_ENERGY = 34.0
+"""β [J]: the least that kills a person without shelter (RISK-ACO and PSO-BAS Table 2)."""
+
+SHELTER = {"none": 0.0, "sparse trees": 0.25, "trees or low buildings": 0.5, "high buildings": 0.75, "industry": 1.0}
+"""p_s by what stands there (RISK-ACO and PSO-BAS Table 1)."""
+
+CAR_AREA, LANE_WIDTH, DEATHS_PER_CRASH = 8.4, 3.0, 3.0
+"""S_car [m²], D_road [m] and T (RISK-ACO and PSO-BAS Table 2)."""
+
+CARS_PER_KM = 0.1
+"""K (RISK-ACO and PSO-BAS Table 2), printed without a unit. Per metre, one cell of road would be riskier than any whole
+route in either paper; so it is per kilometre."""
+
+
+def impact_fatality(
+    energy: npt.ArrayLike,
+    shelter: npt.ArrayLike,
+    *,
+    even_odds_energy: float = EVEN_ODDS_ENERGY,
+    least_fatal_energy: float = LEAST_FATAL_ENERGY,
+) -> np.ndarray:
+    """Chance that a person who is hit dies (RISK-ACO Eq. 8, PSO-BAS Eq. 6).
+
+    P(f) = 1 / (1 + √(α/β)·(β/E)^(1/(4 p_s))), computed through logarithms, so that no power overflows. At p_s = 0 it
+    takes its limit: 0 below β, 1 above it, 1/(1 + √(α/β)) at E = β.
+
+    Parameters
+    ----------
+    energy : float or array
+        E_imp [J], at least 0.
+    shelter : float or array
+        p_s from 0 (none) to 1 (industry), see `SHELTER`; broadcast with `energy`.
+    even_odds_energy : float
+        α [J], above 0.
+    least_fatal_energy : float
+        β [J], above 0.
+
+    Returns
+    -------
+    float or array
+        P(f), 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    checks.not_negative("energy", energy)
+    checks.within("shelter", shelter, 0.0, 1.0, "(0 none, 1 industry)")
+    checks.positive("even_odds_energy", even_odds_energy)
+    checks.positive("least_fatal_energy", least_fatal_energy)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        over = np.log(np.asarray(energy, dtype=float) / least_fatal_energy)
+        power = np.where(over == 0, 0.0, over / (4 * np.asarray(shelter, dtype=float)))
+    return expit(power - 0.5 * np.log(even_odds_energy / least_fatal_energy))
+
+
+def person_rate(
+    height: npt.ArrayLike,
+    population_density: npt.ArrayLike = POPULATION_DENSITY,
+    shelter: npt.ArrayLike = 0.0,
+    uav: UAV = RISK_QUADROTOR,
+    *,
+    speed: float | None = None,
+    ballistic: bool = False,
+    air_density: float = AIR_DENSITY,
+    as_printed: bool = False,
+) -> np.ndarray:
+    """Deaths of people on the ground per hour of flight, P1 = f_c·ρ·A_exp·P(f) (RISK-ACO Eqs 4-5, PSO-BAS Eqs 2-3).
+
+    Parameters
+    ----------
+    height : float or array
+        Above what the wreck falls on [m], at least 0.
+    population_density : float or array
+        ρ [1/m²], at least 0; a city has 0.001 to 0.03.
+    shelter : float or array
+        p_s, 0 to 1. The three are broadcast.
+    uav : UAV
+    speed : float, optional
+        Forward speed when it fails [m/s]; the cruise speed by default.
+    ballistic : bool
+        With drag on the forward speed too, see `ballistic_fall`; by default, as in the papers, it is kept.
+    air_density : float
+        ρ_A [kg/m³].
+    as_printed : bool
+        With the printed fall speed, see `fall_speed`.
+
+    Returns
+    -------
+    float or array
+        P1 [1/h].
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or `ballistic` and `as_printed` are asked for at once.
+    """
+    if ballistic and as_printed:
+        raise ValueError("as_printed and ballistic exclude each other: the papers print the closed form only")
+    checks.not_negative("population_density", population_density)
+    if ballistic:
+        fall = ballistic_fall(height, uav, speed=speed, air_density=air_density)
+        forward, down = fall.forward_speed, fall.fall_speed
+    else:
+        down = fall_speed(height, uav, air_density=air_density, as_printed=as_printed)
+        forward = np.asarray(uav.cruise_speed if speed is None else speed)
+    people = np.asarray(population_density, dtype=float) * lethal_area(height, forward, down, uav.diameter / 2)
+    return FAILURE_RATE * people * impact_fatality(impact_energy(uav.mass + uav.payload, forward, down), shelter)
+
+
+def vehicle_share(cars_per_km: npt.ArrayLike = CARS_PER_KM, lane_width: npt.ArrayLike = LANE_WIDTH) -> np.ndarray:
+    """Share of a road that is covered by cars, C = S_car·K / D_road (RISK-ACO Eq. 10, PSO-BAS Eq. 8).
+
+    Parameters
+    ----------
+    cars_per_km : float or array
+        K, cars per kilometre of a lane, at least 0; 0.1 is a road at night, 10 a busy one.
+    lane_width : float or array
+        D_road [m], above 0.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or cars would cover more than the road: a unit was mistaken.
+    """
+    checks.not_negative("cars_per_km", cars_per_km)
+    checks.positive("lane_width", lane_width)
+    share = CAR_AREA * np.asarray(cars_per_km, dtype=float) / 1000 / np.asarray(lane_width, dtype=float)
+    checks.refuse(share, share <= 1, "cars_per_km must leave cars on at most the whole lane; the share covered")
+    return share
+
+
+def vehicle_rate(share: npt.ArrayLike) -> np.ndarray:
+    """Deaths in cars per hour of flight over a road, P2 = f_c·C·T (RISK-ACO Eq. 9, PSO-BAS Eq. 7).
+
+    Parameters
+    ----------
+    share : float or array
+        C, share of the ground that is covered by cars, 0 to 1, see `vehicle_share`.
+
+    Returns
+    -------
+    float or array
+        P2 [1/h], at any height.
+
+    Raises
+    ------
+    ValueError
+        If the share is not from 0 to 1.
+    """
+    checks.within("share", share, 0.0, 1.0, "of the ground")
+    return FAILURE_RATE * DEATHS_PER_CRASH * np.asarray(share, dtype=float)
