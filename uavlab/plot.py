@@ -12,12 +12,14 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex, to_rgb
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm, Normalize, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from uavlab.city import City
+from uavlab.risk import RiskMap
 from uavlab.route import Route
 
 ROUTE_COLORS = ("#D55E00", "#0072B2", "#000000", "#CC79A7", "#009E73", "#E69F00")
@@ -55,8 +57,16 @@ def plan(city: City, *routes: Route) -> Figure:
     return finished(figure)
 
 
+RISK_LABEL = "risk r [deaths per hour of flight]"
+
+
 def section(
-    city: City, height: float, values: np.ndarray | None = None, *routes: Route, label: str = "clearance [m]"
+    city: City,
+    height: float,
+    values: np.ndarray | None = None,
+    *routes: Route,
+    label: str = "clearance [m]",
+    log: bool = False,
 ) -> Figure:
     """A horizontal section: buildings black, and values of the voxels at this height in colour.
 
@@ -71,23 +81,89 @@ def section(
         Seen from above.
     label : str
         Of the colour bar, with a unit.
+    log : bool
+        Colours in steps of factors, for values above 0 that span several powers of ten.
 
     Raises
     ------
     ValueError
         If the height lies outside of the map.
     """
-    k = int(city.cell_of((city.origin[0], city.origin[1], height))[2])
-    if not 0 <= k < city.shape[2]:
-        low, high = city.bounds[:, 2]
-        raise ValueError(f"height must lie on the map, {low:g} to {high:g} m, got {height!r}")
+    k = level_of(city, height)
     figure, axes = new_figure(6.4, 5.4)
     layer = (city.clearance if values is None else np.asarray(values))[:, :, k]
-    image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL)
+    image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL, norm=norm_of(log))
     add_color_bar(figure, axes, image, label)
     axes.set_facecolor("black")
     draw_routes(axes, routes)
     axes.set_title(f"{city.name}, {height:g} m above the ground (buildings black)")
+    return finished(figure)
+
+
+def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
+    """The risk of flying at a height, on a scale of factors; buildings black, hatched where the UAV would be too low.
+
+    Parameters
+    ----------
+    risk_map : RiskMap
+    height : float
+        Where to cut [m].
+    routes : Route
+        Seen from above.
+
+    Raises
+    ------
+    ValueError
+        If the height lies outside of the map.
+    """
+    city = risk_map.city
+    k = level_of(city, height)
+    figure = section(city, height, risk_map.rate, *routes, label=RISK_LABEL, log=True)
+    too_low = ~(risk_map.flyable | city.occupied)[:, :, k]
+    if too_low.any():
+        axes = figure.axes[0]
+        x, y = (city.origin[a] + city.cell * (np.arange(city.shape[a]) + 0.5) for a in range(2))
+        axes.contourf(x, y, too_low.T, levels=[0.5, 1.5], colors="none", hatches=["////"])
+        axes.set_title(f"{axes.get_title()[:-1]}, too low hatched)")
+    return finished(figure)
+
+
+def layers(risk_map: RiskMap) -> Figure:
+    """What a risk map was made from: people, shelter and cars, on three plans."""
+    figure, panels = plt.subplots(1, 3, figsize=(11.4, 4.0), dpi=DPI, layout="constrained", sharey=True)
+    shown = (
+        (1e6 * risk_map.population_density, "people per km²"),
+        (risk_map.shelter, "shelter $p_s$ (0 none, 1 industry)"),
+        (1e6 * risk_map.vehicle_share, "ground under cars [m² per km²]"),
+    )
+    for axes, (layer, label) in zip(panels, shown, strict=True):
+        image = draw_map(axes, risk_map.city, layer, SEQUENTIAL)
+        figure.colorbar(image, ax=axes, location="bottom", label=label)
+    for axes in panels[1:]:
+        axes.set_ylabel("")
+    return finished(figure)
+
+
+def front(routes: Sequence[Route], *marked: Route, label: str = "risk ∫ r ds/dx [1/h]") -> Figure:
+    """Length against risk (the routes' `cost`): a Pareto front as a line with its points, other routes marked.
+
+    Parameters
+    ----------
+    routes : sequence of Route
+        As from `pareto_front`.
+    marked : Route
+        Others to compare, each with its cost in the same unit.
+    label : str
+        Of the vertical axis, with a unit.
+    """
+    figure, axes = new_figure(6.4, 4.2)
+    axes.plot([r.length for r in routes], [r.cost for r in routes], "o-", color=ROUTE_COLORS[1], label="Pareto front",
+              drawstyle="steps-post", linewidth=1)  # fmt: skip
+    for route, color, marker in zip(marked, ("#D55E00", "#000000", "#CC79A7", "#009E73"), "^sDv", strict=False):
+        axes.plot(route.length, route.cost, marker, color=color, markersize=9, label=label_of(route))
+    axes.set(xlabel="length [m]", ylabel=label, yscale="log")
+    axes.grid(alpha=0.3, which="both")
+    axes.legend(fontsize=8)
     return finished(figure)
 
 
@@ -164,13 +240,21 @@ def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
     return finished(figure)
 
 
-def still(city: City, *routes: Route, elevation_deg: float = 32.0, azimuth_deg: float = -60.0) -> Figure:
+def still(
+    city: City,
+    *routes: Route,
+    risk: RiskMap | None = None,
+    elevation_deg: float = 32.0,
+    azimuth_deg: float = -60.0,
+) -> Figure:
     """The scene as a picture, for paper and previews: city and routes in three dimensions, equal scales.
 
     Parameters
     ----------
     city : City
     routes : Route
+    risk : RiskMap, optional
+        Paints the ground with the risk just above it.
     elevation_deg, azimuth_deg : float
         From where it is seen [degrees]: height above the horizon, direction counted from east.
     """
@@ -193,6 +277,12 @@ def still(city: City, *routes: Route, elevation_deg: float = 32.0, azimuth_deg: 
             axes.plot(*route.points.T, color=color, linewidth=0.8, alpha=0.5, zorder=9)  # what a building hides
             polygons.append(ribbon)
             colors.append(np.tile(to_rgb(color), (len(ribbon), 1)))
+    if risk is not None:
+        values = ground_risk(risk)
+        norm = LogNorm(values.min(), values.max())
+        polygons.insert(0, layer_triangles(city, low[2]).reshape(-1, 3, 3))
+        colors.insert(0, np.repeat(SEQUENTIAL(norm(values.ravel()))[:, :3], 2, axis=0))
+        figure.colorbar(ScalarMappable(norm, SEQUENTIAL), ax=axes, shrink=0.6, pad=0.02, label=RISK_LABEL)
     if polygons:
         faces = np.concatenate(colors)
         axes.add_collection3d(Poly3DCollection(np.concatenate(polygons), facecolors=faces, edgecolors=faces, lw=0.3))
@@ -204,6 +294,23 @@ def still(city: City, *routes: Route, elevation_deg: float = 32.0, azimuth_deg: 
     if routes:
         axes.legend(loc="upper left", fontsize=8)
     return finished(figure)
+
+
+def ground_risk(risk_map: RiskMap) -> np.ndarray:
+    """Risk in the lowest voxel of each column where the UAV may fly, (nx, ny) [1/h]."""
+    lowest = risk_map.flyable.argmax(axis=2)
+    return np.take_along_axis(risk_map.rate, lowest[..., None], axis=2)[..., 0]
+
+
+def layer_triangles(city: City, height: float) -> np.ndarray:
+    """Two triangles for each column of voxels, (nx·ny, 2, 3, 3) [m], at a height."""
+    i, j = (index.ravel() for index in np.indices(city.shape[:2]))
+    corners = np.stack(
+        [np.column_stack([i + a, j + b, np.zeros(len(i))]) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))], axis=1
+    )
+    corners = city.origin + city.cell * corners
+    corners[..., 2] = height
+    return corners[:, [[0, 1, 2], [0, 2, 3]]]
 
 
 def voxel_surface(city: City) -> np.ndarray:
@@ -263,6 +370,19 @@ def ribbons(points: np.ndarray, width: float) -> np.ndarray:
         surfaces.append(np.stack([start - side, end - side, end + side], axis=1))
         surfaces.append(np.stack([start - side, end + side, start + side], axis=1))
     return np.concatenate(surfaces)
+
+
+def level_of(city: City, height: float) -> int:
+    """Index of the layer of voxels at a height [m]; `ValueError` if it lies outside of the map."""
+    k = int(city.cell_of((city.origin[0], city.origin[1], height))[2])
+    if not 0 <= k < city.shape[2]:
+        low, high = city.bounds[:, 2]
+        raise ValueError(f"height must lie on the map, {low:g} to {high:g} m, got {height!r}")
+    return k
+
+
+def norm_of(log: bool) -> Normalize:
+    return LogNorm() if log else Normalize()
 
 
 def new_figure(width: float, height: float) -> tuple[Figure, Axes]:

@@ -25,6 +25,7 @@ from meshcat.transformations import translation_matrix
 
 from uavlab import plot
 from uavlab.city import City
+from uavlab.risk import RiskMap
 from uavlab.route import Route
 
 FRAMES_PER_SECOND = 30
@@ -56,12 +57,16 @@ def show(
     *routes: Route,
     safe_distance: float | None = None,
     expansion: bool = False,
+    risk: RiskMap | None = None,
+    slice_height: float | None = None,
     height: int = 480,
 ) -> Scene:
     """The scene for a notebook; arguments as for `page`, and the frame's height in pixels."""
     picture = io.BytesIO()
-    plot.still(city, *routes).savefig(picture, format="png", dpi=72)
-    content = page(city, *routes, safe_distance=safe_distance, expansion=expansion)
+    plot.still(city, *routes, risk=risk).savefig(picture, format="png", dpi=72)
+    content = page(
+        city, *routes, safe_distance=safe_distance, expansion=expansion, risk=risk, slice_height=slice_height
+    )
     return Scene(content, height, picture.getvalue())
 
 
@@ -70,6 +75,8 @@ def page(
     *routes: Route,
     safe_distance: float | None = None,
     expansion: bool = False,
+    risk: RiskMap | None = None,
+    slice_height: float | None = None,
     title: str | None = None,
 ) -> str:
     """One self-contained HTML page with the city, its routes, and a UAV that flies the first of them.
@@ -84,6 +91,10 @@ def page(
         Radius of a ball around the UAV [m]: the clearance it should keep.
     expansion : bool
         Show in which order the first route's planner expanded its nodes (`record=True`), as an animation.
+    risk : RiskMap, optional
+        Paints the ground with the risk in the lowest voxels where the UAV may fly; the legend has a colour bar.
+    slice_height : float, optional
+        Draws the risk at this height [m] too, as a plane that one can look through.
     title : str, optional
         Of the page; by default the city's name.
 
@@ -95,8 +106,11 @@ def page(
     Raises
     ------
     ValueError
-        If `expansion` is asked for without a route that recorded its order, or `safe_distance` is not above 0.
+        If `expansion` is asked for without a route that recorded its order, `safe_distance` is not above 0,
+        `slice_height` lies outside of the map, or there is no `risk` to slice.
     """
+    if slice_height is not None and risk is None:
+        raise ValueError("slice_height needs risk=..., the map to cut")
     if safe_distance is not None and not safe_distance > 0:
         raise ValueError(f"safe_distance must be the radius of a ball in metres, above 0, got {safe_distance!r}")
     if expansion and not (routes and "order" in routes[0].info):
@@ -105,6 +119,8 @@ def page(
     scene = meshcat.Visualizer(window=window)
     set_stage(scene, city)
     draw_city(scene["city"], city)
+    if risk is not None:
+        draw_risk(scene["risk"], risk, slice_height)
     animation = Animation(default_framerate=FRAMES_PER_SECOND)
     colors = plot.route_colors(len(routes))
     for number, (route, color) in enumerate(zip(routes, colors, strict=True)):
@@ -116,10 +132,10 @@ def page(
         animate_flight(scene["uav"], city, routes[0], safe_distance, animation)
     if animation.clips:
         scene.set_animation(animation, repetitions=1000)
-    return window.page(title or city.name, legend(city, routes, colors))
+    return window.page(title or city.name, legend(city, routes, colors, risk))
 
 
-def legend(city: City, routes: tuple[Route, ...], colors: list[str]) -> str:
+def legend(city: City, routes: tuple[Route, ...], colors: list[str], risk: RiskMap | None = None) -> str:
     """What the colours mean and how large things are, as HTML."""
     lines = [f"<b>{html.escape(city.name)}</b> · squares of {grid_spacing(city):g} m · x → east, y → north, z → up"]
     for route, color in zip(routes, colors, strict=True):
@@ -127,6 +143,12 @@ def legend(city: City, routes: tuple[Route, ...], colors: list[str]) -> str:
         lines.append(f'<span style="color:{color}">&#9608;&#9608;</span> {html.escape(text)}')
     if any(len(route.points) > 1 for route in routes):
         lines.append("&#9679; start &nbsp; &#9650; goal")
+    if risk is not None:
+        least, most = risk_range(risk)
+        stops = ",".join(plot.sequential_color(share) for share in np.linspace(0, 1, 9))
+        style = f"display:inline-block;width:9em;height:.8em;background:linear-gradient(90deg,{stops})"
+        bar = f'<span style="{style}"></span>'
+        lines.append(f"{least:.1e} {bar} {most:.1e} deaths per hour of flight (scale of factors)")
     return "<br>".join(lines)
 
 
@@ -185,6 +207,32 @@ def draw_city(scene: meshcat.Visualizer, city: City) -> None:
         mesh(np.concatenate(surfaces), np.concatenate(colors)), g.MeshLambertMaterial(vertexColors=True)
     )
     draw_lines(scene["edges"], np.concatenate([building.edges() for building in city.buildings]), 0x555555)
+
+
+def risk_range(risk_map: RiskMap) -> tuple[float, float]:
+    """Least and greatest risk where the UAV may fly [1/h]."""
+    rates = risk_map.rate[risk_map.flyable]
+    rates = rates[rates > 0]
+    return (float(rates.min()), float(rates.max())) if len(rates) else (1e-12, 1e-11)
+
+
+def draw_risk(scene: meshcat.Visualizer, risk_map: RiskMap, slice_height: float | None) -> None:
+    """The ground painted with the risk above it, and a slice at a height, both on one scale of factors."""
+    city = risk_map.city
+    least, most = np.log(risk_range(risk_map))
+
+    def paint(name: str, values: np.ndarray, shown: np.ndarray, height: float, opacity: float) -> None:
+        shares = (np.log(np.maximum(values, 1e-300)) - least) / max(most - least, 1e-9)
+        triangles = plot.layer_triangles(city, height)[shown.ravel()].reshape(-1, 3, 3)
+        colors = np.repeat(plot.SEQUENTIAL(np.clip(shares, 0, 1)[shown])[:, :3], 6, axis=0)
+        material = g.MeshBasicMaterial(vertexColors=True, transparent=opacity < 1, opacity=opacity, side=2)
+        scene[name].set_object(mesh(triangles, colors), material)
+
+    everywhere = np.ones(city.shape[:2], dtype=bool)
+    paint("ground", plot.ground_risk(risk_map), everywhere, city.origin[2] + 0.01 * city.cell, 1.0)
+    if slice_height is not None:
+        k = plot.level_of(city, slice_height)
+        paint("slice", risk_map.rate[:, :, k], risk_map.flyable[:, :, k], slice_height, 0.6)
 
 
 def draw_route(scene: meshcat.Visualizer, city: City, route: Route, color: str) -> None:
