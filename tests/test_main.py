@@ -1,6 +1,7 @@
 """`python -m uavlab`, as a person calls it."""
 
 import json
+import re
 import subprocess
 import sys
 
@@ -44,6 +45,26 @@ def test_plans_through_a_city_file(tmp_path, capsys):
     assert "1 buildings" in out.read_text(encoding="utf-8")
 
 
+def test_the_campus_is_planned_by_risk(tmp_path, capsys):
+    out = tmp_path / "route.html"
+    assert main(["--city", "campus", "--detour", "8", "--out", str(out)]) == 0
+    assert "least risk" in capsys.readouterr().out
+    page = out.read_text(encoding="utf-8")
+    saved, longer = re.search(r"(\d+)% less risk for ([\d.]+)% more way", page).groups()
+    assert int(saved) >= 80
+    assert float(longer) <= 8
+    assert "deaths per hour of flight" in page  # the scene's colour bar
+
+
+def test_least_risk_in_a_city_without_people_takes_them_as_spread_evenly(tmp_path):
+    voxels, out = tmp_path / "wall.3dmap", tmp_path / "route.html"
+    lines = [f"5 {y} {z}" for y in range(9) for z in range(9)]
+    voxels.write_text("voxel 10 10 10\n" + "\n".join(lines) + "\n")
+    arguments = ["--city", str(voxels), "--cell", "2", "--clearance", "0", "--planner", "least-risk", "--out", str(out)]
+    assert main(arguments) == 0
+    assert "30,000 per km² on average, at most 30,000" in out.read_text(encoding="utf-8")
+
+
 def test_no_way_is_an_answer_with_its_own_exit_code(tmp_path, capsys):
     voxels = tmp_path / "wall.3dmap"
     lines = [f"5 {y} {z}" for y in range(10) for z in range(10)]
@@ -59,7 +80,8 @@ def test_no_way_is_an_answer_with_its_own_exit_code(tmp_path, capsys):
     ("arguments", "message"),
     [
         (["--out", "no/such/folder/page.html"], "can't write no/such/folder/page.html: No such file or directory"),
-        (["--city", "nowhere"], "--city nowhere: neither a known name (table1) nor a file"),
+        (["--city", "campus", "--detour", "-3"], "--detour must be a percentage of at least 0, got -3"),
+        (["--city", "nowhere"], "--city nowhere: neither a known name (table1, campus) nor a file"),
         (["--start", "65,20,30"], "start (65.0, 20.0, 30.0) lies in building '1 notch'"),
         (["--cell", "-1"], "cell must be the edge of a voxel in metres, above 0, got -1.0"),
         (["--clearance", "60"], "min_clearance asks for 60 m"),

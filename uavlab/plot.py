@@ -132,7 +132,7 @@ def layers(risk_map: RiskMap) -> Figure:
     """What a risk map was made from: people, shelter and cars, on three plans."""
     figure, panels = plt.subplots(1, 3, figsize=(11.4, 4.0), dpi=DPI, layout="constrained", sharey=True)
     shown = (
-        (1e6 * risk_map.population_density, "people per km²"),
+        (1e3 * risk_map.population_density, "thousands of people per km²"),
         (risk_map.shelter, "shelter $p_s$ (0 none, 1 industry)"),
         (1e6 * risk_map.vehicle_share, "ground under cars [m² per km²]"),
     )
@@ -280,9 +280,13 @@ def still(
     if risk is not None:
         values = ground_risk(risk)
         norm = LogNorm(values.min(), values.max())
-        polygons.insert(0, layer_triangles(city, low[2]).reshape(-1, 3, 3))
-        colors.insert(0, np.repeat(SEQUENTIAL(norm(values.ravel()))[:, :3], 2, axis=0))
-        figure.colorbar(ScalarMappable(norm, SEQUENTIAL), ax=axes, shrink=0.6, pad=0.02, label=RISK_LABEL)
+        paint = np.repeat(SEQUENTIAL(norm(values.ravel())), 2, axis=0)
+        ground = layer_triangles(city, low[2]).reshape(-1, 3, 3)
+        axes.add_collection3d(Poly3DCollection(ground, facecolors=paint, edgecolors=paint, lw=0.3, zorder=0))
+        bar = figure.add_axes((0.08, 0.1, 0.24, 0.025))
+        figure.colorbar(ScalarMappable(norm, SEQUENTIAL), cax=bar, orientation="horizontal").set_label(
+            RISK_LABEL, fontsize=8
+        )
     if polygons:
         faces = np.concatenate(colors)
         axes.add_collection3d(Poly3DCollection(np.concatenate(polygons), facecolors=faces, edgecolors=faces, lw=0.3))
