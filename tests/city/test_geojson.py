@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 from files import COURTYARD, FAR, SQUARE, feature, volume, write
+from hypothesis import given
+from hypothesis import strategies as st
 
 from uavlab.city import Building, City, read_city, read_geojson
-from uavlab.city.geojson import east_north
+from uavlab.city.geojson import east_north, longitude_latitude
 
 
 def test_projected_metres_are_shifted_to_the_south_west_corner(geojson):
@@ -133,6 +135,34 @@ def test_distances_agree_with_haversine():
             h = np.sin((phi[i] - phi[j]) / 2) ** 2
             h += np.cos(phi[i]) * np.cos(phi[j]) * np.sin((lon[i] - lon[j]) / 2) ** 2
             assert np.linalg.norm(local[i] - local[j]) == pytest.approx(2 * 6371e3 * np.arcsin(np.sqrt(h)), rel=0.005)
+
+
+references = st.tuples(st.floats(-180, 180), st.floats(-90, 90))
+within_100_km = st.tuples(st.floats(0, 100e3), st.floats(0, 2 * np.pi)).map(
+    lambda polar: (polar[0] * np.cos(polar[1]), polar[0] * np.sin(polar[1]))
+)
+
+
+@given(st.lists(within_100_km, min_size=1, max_size=4), references)
+def test_longitude_and_latitude_are_the_inverse_of_east_and_north(points, reference):
+    lonlat = longitude_latitude(points, reference)
+    assert lonlat.shape == (len(points), 2)
+    assert (np.abs(lonlat[:, 1]) <= 90).all()
+    assert east_north(lonlat, reference) == pytest.approx(np.array(points), abs=1e-6)
+
+
+@given(st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)), st.floats(-180, 180), st.floats(-80, 80))
+def test_east_and_north_are_the_inverse_of_longitude_and_latitude(away, lon, lat):
+    lonlat = np.add((lon, lat), away)
+    assert longitude_latitude(east_north(lonlat, (lon, lat)), (lon, lat)) == pytest.approx(lonlat, abs=1e-11)
+
+
+def test_longitudes_go_on_past_the_date_line_and_grids_keep_their_shape():
+    lonlat = longitude_latitude(np.full((2, 3, 2), (5000.0, 0.0)), (179.99, -17))
+    assert lonlat.shape == (2, 3, 2)
+    assert lonlat[0, 0, 0] == pytest.approx(180.037, abs=1e-3)
+    assert longitude_latitude((-5000, 0), (-179.99, -17))[0] == pytest.approx(-180.037, abs=1e-3)
+    assert longitude_latitude((0, 0), (4.36, 52.01)) == pytest.approx((4.36, 52.01), abs=1e-12)
 
 
 def degrees(metres_ring, lon=4.36, lat=52.01):

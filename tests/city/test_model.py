@@ -98,6 +98,100 @@ def test_clearance_is_infinite_without_obstacles_and_computed_once():
     assert city.clearance is city.clearance
 
 
+HOUSE = Building.roofed([(2, 3), (22, 3), (22, 13), (2, 13)], 5, [(7, 8, 10), (17, 8, 10)], name="hip roof")
+
+
+def hip_roof(x, y):
+    """Height of HOUSE: 5 m at the eaves, rising one in one from all four sides."""
+    return 5 + np.minimum(np.minimum(x - 2, 22 - x), np.minimum(y - 3, 13 - y))
+
+
+def heights(city):
+    """Height of each centre above the map's floor, (nx, ny, nz)."""
+    return np.broadcast_to(city.cell * (np.arange(city.shape[2]) + 0.5), city.shape)
+
+
+def test_height_above_an_empty_map_is_that_above_its_floor():
+    city = City(EMPTY, cell=2.0, origin=(3, 4, -50))
+    assert city.height_above_surface == pytest.approx(heights(city))
+    assert city.height_above_surface is city.height_above_surface
+
+
+def test_height_above_a_box_is_exact_where_its_roof_cuts_through_voxels():
+    city = City.from_buildings([Building.prism([(2, 2), (8, 2), (8, 6), (2, 6)], 7.3)], cell=2.0, margin=6)
+    above, height = city.height_above_surface, heights(city)
+    under = np.zeros(city.shape, bool)
+    under[3:6, 3:5] = True  # the map begins at (−4, −4)
+    assert above[~under] == pytest.approx(height[~under])
+    assert above[under] == pytest.approx(np.where(height < 7.3, 0, height - 7.3)[under])
+    assert above[3, 3, 4] == pytest.approx(9 - 7.3)
+
+
+@pytest.mark.parametrize("cell", [0.5, 1.0, 1.7])
+def test_height_above_a_hip_roof_is_exact(cell):
+    city = City.from_buildings([HOUSE], cell=cell, origin=(0, 0, 0), size=(24, 16, 20))
+    x, y, z = np.moveaxis(city.center_of(np.moveaxis(np.indices(city.shape), 0, -1)), -1, 0)
+    under = (x > 2) & (x < 22) & (y > 3) & (y < 13)
+    roof = np.where(under, hip_roof(x, y), 0.0)
+    expected = np.where(z > roof, z - roof, 0.0)
+    assert city.height_above_surface == pytest.approx(expected, abs=1e-9)
+
+
+def test_height_below_a_floating_building_is_that_above_what_stands_there():
+    yard = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    shed, bridge = Building.prism(yard, 3.5), Building.prism([(0, 0), (8, 0), (8, 4), (0, 4)], 9.2, bottom=6)
+    for buildings in ([shed, bridge], [bridge, shed]):
+        city = City.from_buildings(buildings, origin=(0, 0, 0), size=(10, 4, 13))
+        above = city.height_above_surface
+        assert above[2, 2] == pytest.approx([0, 0, 0, 0, 1, 2, 0, 0, 0, 0.3, 1.3, 2.3, 3.3])
+        assert above[6, 2] == pytest.approx([0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 0, 0, 0, 0.3, 1.3, 2.3, 3.3])
+        assert above[9, 2] == pytest.approx(np.arange(13) + 0.5)
+
+
+def test_height_in_a_city_of_voxels_goes_by_their_tops():
+    occupied = np.zeros((2, 1, 6), bool)
+    occupied[0, 0, [0, 3]] = True
+    above = City(occupied, cell=2.0, origin=(0, 0, 100)).height_above_surface
+    assert above[0, 0].tolist() == [0, 1, 3, 0, 1, 3]
+    assert above[1, 0].tolist() == [1, 3, 5, 7, 9, 11]
+    assert (City(np.ones((2, 2, 2), bool)).height_above_surface == 0).all()
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_height_above_any_buildings_is_found_by_looking_down(seed):
+    """Bodies of any shape, overlapping, floating, cut by the border and the floor of a map that begins anywhere."""
+    rng = np.random.default_rng(seed)
+    origin = rng.uniform(-500, 500, 3)
+    bodies = [
+        Building.hull(origin + rng.uniform((-2, -2, -3), (14, 12, 10)) + rng.uniform(-4, 4, (8, 3))) for _ in range(5)
+    ]
+    outline = np.array([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
+    ell = Building.prism(origin[:2] + rng.uniform(0, 5, 2) + outline, origin[2] + 8.5, bottom=origin[2] - 1)
+    city = City.from_buildings([*bodies, ell], cell=1.3, origin=origin, size=(12, 11, 12))
+    step = 0.004
+    for i, j in np.ndindex(city.shape[:2]):
+        x, y, _ = city.center_of((i, j, 0))
+        z = np.arange(origin[2], city.bounds[1, 2], step)
+        points = np.column_stack([np.full_like(z, x), np.full_like(z, y), z])
+        solid = np.any([building.contains(points) for building in city.buildings], axis=0)
+        for k in range(city.shape[2]):
+            level = city.center_of((i, j, k))[2]
+            if city.occupied[i, j, k]:
+                assert city.height_above_surface[i, j, k] == 0
+            else:
+                below = z[solid & (z < level)]
+                surface = below.max() if len(below) else origin[2]
+                assert city.height_above_surface[i, j, k] == pytest.approx(level - surface, abs=2 * step)
+
+
+@pytest.mark.parametrize("shift", [(1e4, -3e4, 250.0), (-0.37, 12.1, -80.0)])
+def test_height_doesnt_depend_on_where_the_map_lies(shift):
+    moved = Building.hull(HOUSE.pieces[0] + shift)
+    here = City.from_buildings([HOUSE], origin=(0, 0, 0), size=(24, 16, 20))
+    there = City.from_buildings([moved], origin=shift, size=(24, 16, 20))
+    assert there.height_above_surface == pytest.approx(here.height_above_surface, abs=1e-6)
+
+
 @pytest.mark.parametrize("seed", range(10))
 def test_random_pairs_are_free_apart_and_clear(seed):
     city = City(np.random.default_rng(seed).random((8, 9, 7)) < 0.02, cell=2.5, origin=(-40, 3, 1))

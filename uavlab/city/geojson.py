@@ -211,19 +211,22 @@ def east_north(lonlat: npt.ArrayLike, reference: npt.ArrayLike) -> np.ndarray:
 def longitude_latitude(points: npt.ArrayLike, reference: npt.ArrayLike) -> np.ndarray:
     """Longitude and latitude (..., 2) [degrees] of points (..., 2) [m] east and north of a reference.
 
-    The inverse of `east_north`, by Newton's method with the ellipsoid's two radii of curvature; to a micrometre within
-    100 km.
+    The inverse of `east_north`, exact: the line through the point, upright on the plane, meets the ellipsoid
+    (x² + y²)/a² + z²/b² = 1 where a quadratic equation says, the nearer of its two roots. Longitudes go on past ±180
+    instead of jumping.
     """
-    wanted, lonlat = np.asarray(points, dtype=float), np.asarray(reference, dtype=float)
-    latitude = np.radians(lonlat[1])
-    eccentricity_squared = FLATTENING * (2 - FLATTENING)
-    normal = EQUATORIAL_RADIUS / np.sqrt(1 - eccentricity_squared * np.sin(latitude) ** 2)
-    meridian = normal * (1 - eccentricity_squared) / (1 - eccentricity_squared * np.sin(latitude) ** 2)
-    metres_per_degree = np.radians(1.0) * np.array([normal * np.cos(latitude), meridian])
-    lonlat = lonlat + wanted / metres_per_degree
-    for _ in range(20):
-        lonlat = lonlat + (wanted - east_north(lonlat, reference)) / metres_per_degree
-    return lonlat
+    east, north = np.moveaxis(np.asarray(points, dtype=float), -1, 0)
+    longitude, latitude = np.asarray(reference, dtype=float)
+    up_x, up_z = np.cos(np.radians(latitude)), np.sin(np.radians(latitude))  # with x towards the reference's meridian
+    start_x, _, start_z = earth_centred((0.0, latitude))
+    x, z = start_x - up_z * north, start_z + up_x * north
+    squeezed = (1 - FLATTENING) ** 2  # (b/a)²
+    half = up_x * x + up_z * z / squeezed
+    beyond = x**2 + east**2 + z**2 / squeezed - EQUATORIAL_RADIUS**2
+    up = -beyond / (half + np.sqrt(half**2 - (up_x**2 + up_z**2 / squeezed) * beyond))
+    x, z = x + up * up_x, z + up * up_z
+    turned = np.degrees(np.arctan2(east, x))
+    return np.stack([longitude + turned, np.degrees(np.arctan2(z, squeezed * np.hypot(x, east)))], axis=-1)
 
 
 def earth_centred(lonlat: npt.ArrayLike) -> np.ndarray:

@@ -123,7 +123,7 @@ def campus(zones: Sequence[dict[str, Any]], crowds: np.ndarray, cell: float, nam
         for number, z in enumerate((z for z in zones if z["height_m"] > 0), 1)
     ]
     city = City.from_buildings(buildings, cell=cell, origin=(0, 0, 0), size=SIZE, name=name)
-    at = column_centers(city)
+    at = np.minimum(column_centers(city), np.nextafter(SIZE[0], 0))  # the last column may stick out of the campus
     x, y = at[..., 0], at[..., 1]
     shelter, people, built = np.zeros(x.shape), np.zeros(x.shape), np.zeros(x.shape, dtype=bool)
     for z in zones:

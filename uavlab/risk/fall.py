@@ -50,7 +50,7 @@ def fall_speed(
         ρ_A [kg/m³].
     as_printed : bool
         Half the exponent: V_y² → g h instead of 2 g h for small h, so half of the energy is lost. At 30 m it gives
-        16.8 instead of 23.4 m/s. (RISK-ACO drops ρ_A as well, which leaves the exponent without a unit.)
+        16.8 instead of 23.4 m/s. (RISK-ACO drops ρ_A as well, which leaves the exponent with a unit, m³/kg.)
 
     Returns
     -------
@@ -116,7 +116,7 @@ def ballistic_fall(
     heights = np.asarray(height, dtype=float)
     path = wreck_path(uav, speed, pitch, float(heights.max(initial=0.0)), air_density)
     apex = max(float(path.t_events[1][0]) if len(path.t_events[1]) else 0.0, 0.0)
-    times = np.linspace(apex, path.t[-1], 1000)
+    times = apex + (path.t[-1] - apex) * np.linspace(0.0, 1.0, 1000) ** 2  # the first millimetres take long
     time = np.interp(heights, path.sol(times)[1], times)
     for _ in range(3):  # Newton: from the height at a time to the time at a height
         drop, down = path.sol(time.ravel())[[1, 3]].reshape(2, *time.shape)
@@ -131,7 +131,8 @@ def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_de
     checks.number("speed", speed)
     checks.not_negative("speed", speed)
     checks.within("pitch", pitch, -np.pi / 2, np.pi / 2, "rad (from degrees: numpy.radians)")
-    drag = GRAVITY / terminal_speed(uav, air_density=air_density) ** 2
+    fastest = terminal_speed(uav, air_density=air_density)
+    drag = GRAVITY / fastest**2
 
     def motion(_: float, state: np.ndarray) -> list[float]:
         forward, down = state[2:]
@@ -146,7 +147,7 @@ def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_de
 
     landing.terminal, landing.direction, apex.direction = True, 1, 1  # type: ignore[attr-defined]
     begin = [0.0, 0.0, speed * np.cos(pitch), -speed * np.sin(pitch)]
-    enough = 10 * (1 + (speed + depth) / GRAVITY)  # seconds; even at walking pace it is down by then
+    enough = 10 * (1 + (speed + depth) / GRAVITY) + 2 * depth / fastest  # seconds; it is down by then
     return solve_ivp(motion, (0.0, enough), begin, events=(landing, apex), dense_output=True, rtol=1e-9, atol=1e-9)
 
 

@@ -40,7 +40,7 @@ def raster_layer(
     geographic : bool
         Bounds are longitudes and latitudes on WGS84; the city must know its `reference`.
     fill : float, optional
-        What to take where the raster says nothing; without it that is an error.
+        What to take where the raster says nothing, finite; without it that is an error.
 
     Returns
     -------
@@ -58,6 +58,9 @@ def raster_layer(
     edges = checks.numbers("bounds", bounds)
     if edges.shape != (4,) or not (np.isfinite(edges).all() and edges[0] < edges[2] and edges[1] < edges[3]):
         raise ValueError(f"bounds must be (west, south, east, north) in increasing order, got {bounds!r}")
+    if fill is not None:
+        checks.number("fill", fill)
+        checks.finite("fill", fill)
     points = column_centers(city)
     if geographic:
         points = longitude_latitude(points, checked_reference(city))
@@ -70,7 +73,8 @@ def raster_layer(
     missing = np.isnan(layer)
     if missing.any() and fill is None:
         raise ValueError(
-            f"values say nothing about {missing.mean():.0%} of the city's columns (outside of bounds, or no data); "
+            f"values say nothing about {missing.sum()} of the city's {missing.size} columns "
+            "(outside of bounds, or no data); "
             "give a larger raster, or say with fill what to take there"
         )
     if fill is not None:
@@ -120,9 +124,8 @@ def road_layer(
     checks.positive("width", widths)
     covered = vehicle_share(densities, lane_width)
     centers, half = column_centers(city).reshape(-1, 2), city.cell / 2
-    columns = shapely.box(*(centers - half).T, *(centers + half).T)
-    layer = np.zeros(len(columns))
-    left = columns
+    left = shapely.box(*(centers - half).T, *(centers + half).T)
+    layer = np.zeros(len(left))
     for number in np.argsort(-covered, kind="stable"):  # the busiest first: what it covers is taken
         line = checks.numbers(f"lines[{number}]", lines[number])
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
@@ -130,7 +133,7 @@ def road_layer(
         if geographic:
             line = east_north(line, checked_reference(city))
         roadway = shapely.LineString(line).buffer(widths[number] / 2, cap_style="flat", join_style="mitre")
-        near = np.flatnonzero(shapely.intersects(columns, roadway))
+        near = np.flatnonzero(shapely.intersects(left, roadway))
         layer[near] += covered[number] * shapely.area(shapely.intersection(left[near], roadway)) / city.cell**2
         left[near] = shapely.difference(left[near], roadway)
     return np.minimum(layer, 1.0).reshape(city.shape[:2])
@@ -168,7 +171,8 @@ def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = H
     checks.within("ground", open_ground, 0.0, 1.0, "(0 none, 1 industry)")
     if open_ground.shape not in ((), city.shape[:2]):
         raise ValueError(f"ground must have the city's ground plan {city.shape[:2]}, got {open_ground.shape}")
-    roof = city.cell * np.max(np.where(city.occupied, np.arange(1, city.shape[2] + 1), 0), axis=2)
+    highest, above = city.cell * (city.shape[2] - 0.5), city.height_above_surface[..., -1]
+    roof = np.where(city.occupied[..., -1], city.cell * city.shape[2], np.round(highest - above, 6))
     built = np.where(roof >= high, SHELTER["high buildings"], SHELTER["trees or low buildings"])
     return np.where(roof > 0, built, open_ground)
 

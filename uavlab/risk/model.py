@@ -10,7 +10,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.risk.drift import landing_rate
-from uavlab.risk.rates import person_rate, vehicle_rate
+from uavlab.risk.rates import check_density, person_rate, vehicle_rate
 from uavlab.risk.threat import building_threat
 from uavlab.route import Route
 from uavlab.vehicle import RISK_QUADROTOR, UAV
@@ -27,7 +27,7 @@ class RiskMap:
     ----------
     city : City
     population_density : (nx, ny) array, or one number for all
-        ρ [1/m²], at least 0; 0.03 is 30 000 per km².
+        ρ [1/m²], 0 to 10; 0.03 is 30 000 per km².
     shelter : (nx, ny) array, or one number
         p_s, 0 (none) to 1 (industry), see `SHELTER`.
     vehicle_share : (nx, ny) array, or one number
@@ -44,7 +44,8 @@ class RiskMap:
     Raises
     ------
     ValueError
-        If a layer has another shape than the city's ground plan, a density is negative, a shelter not in [0, 1].
+        If a layer has another shape than the city's ground plan, a density is negative or above 10 per m²,
+        a shelter or share not in [0, 1], or a height negative.
     """
 
     city: City
@@ -59,7 +60,7 @@ class RiskMap:
     def __post_init__(self) -> None:
         for name in ("population_density", "shelter", "vehicle_share"):
             object.__setattr__(self, name, checked_layer(self.city, name, getattr(self, name)))
-        checks.not_negative("population_density [1/m²]", self.population_density)
+        check_density(self.population_density)
         checks.within("shelter", self.shelter, 0.0, 1.0, "(0 none, 1 industry)")
         checks.within("vehicle_share", self.vehicle_share, 0.0, 1.0, "of the ground")
         for name in ("safe_height", "lowest_height"):

@@ -19,6 +19,9 @@ FAILURE_RATE = 6.4e-5
 POPULATION_DENSITY = 30_000e-6
 """ρ [1/m²]: 30 000 people per km² (RISK-ACO and PSO-BAS Table 2)."""
 
+DENSEST_CROWD = 10.0
+"""People per m² [1/m²] above which a density is refused: nobody could move, so a unit was mistaken."""
+
 EVEN_ODDS_ENERGY = 1e6
 """α [J]: kills in half of the cases behind shelter 0.5. Missing in both papers' tables; 1 MJ is the value of the
 literature that the formula comes from (Dalamagkidis, Valavanis and Piegl 2012)."""
@@ -74,7 +77,7 @@ def impact_fatality(
     checks.within("shelter", shelter, 0.0, 1.0, "(0 none, 1 industry)")
     checks.positive("even_odds_energy", even_odds_energy)
     checks.positive("least_fatal_energy", least_fatal_energy)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         over = np.log(np.asarray(energy, dtype=float) / least_fatal_energy)
         power = np.where(over == 0, 0.0, over / (4 * np.asarray(shelter, dtype=float)))
     return expit(power - 0.5 * np.log(even_odds_energy / least_fatal_energy))
@@ -98,7 +101,7 @@ def person_rate(
     height : float or array
         Above what the wreck falls on [m], at least 0.
     population_density : float or array
-        ρ [1/m²], at least 0; a city has 0.001 to 0.03.
+        ρ [1/m²], 0 to 10; a city has 0.001 to 0.03.
     shelter : float or array
         p_s, 0 to 1. The three are broadcast.
     uav : UAV
@@ -123,15 +126,26 @@ def person_rate(
     """
     if ballistic and as_printed:
         raise ValueError("as_printed and ballistic exclude each other: the papers print the closed form only")
-    checks.not_negative("population_density", population_density)
+    check_density(population_density)
+    speed = uav.cruise_speed if speed is None else speed
+    checks.number("speed", speed)
+    checks.not_negative("speed", speed)
     if ballistic:
         fall = ballistic_fall(height, uav, speed=speed, air_density=air_density)
         forward, down = fall.forward_speed, fall.fall_speed
     else:
         down = fall_speed(height, uav, air_density=air_density, as_printed=as_printed)
-        forward = np.asarray(uav.cruise_speed if speed is None else speed)
+        forward = np.asarray(speed, dtype=float)
     people = np.asarray(population_density, dtype=float) * lethal_area(height, forward, down, uav.diameter / 2)
     return FAILURE_RATE * people * impact_fatality(impact_energy(uav.mass + uav.payload, forward, down), shelter)
+
+
+def check_density(population_density: npt.ArrayLike) -> None:
+    """Refuse a density below 0, and one above `DENSEST_CROWD`, which is people per km² or per pixel."""
+    checks.not_negative("population_density", population_density)
+    densities = checks.numbers("population_density", population_density)
+    demand = f"population_density must be in people per m², at most {DENSEST_CROWD:g} (divide those per km² by 1e6)"
+    checks.refuse(densities, densities <= DENSEST_CROWD, demand)
 
 
 def vehicle_share(cars_per_km: npt.ArrayLike = CARS_PER_KM, lane_width: npt.ArrayLike = LANE_WIDTH) -> np.ndarray:

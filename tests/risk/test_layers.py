@@ -1,0 +1,305 @@
+"""Layers: orientation of rasters, area of roads, classes of shelter, and each way of asking wrongly."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from uavlab.city import Building, City
+from uavlab.city.geojson import longitude_latitude
+from uavlab.risk import POPULATION_DENSITY, RiskMap, raster_layer, road_layer, shelter_layer, vehicle_share
+from uavlab.risk.layers import column_centers
+
+CITY = City(np.zeros((4, 3, 2), bool), cell=10.0, origin=(100, -20, 5))  # x 100 to 140, y −20 to 10
+BOUNDS = (100, -20, 140, 10)
+DELFT = (4.36, 52.01)
+FIELD = City(np.zeros((40, 30, 1), bool), cell=2.5, name="field", reference=DELFT)  # 100 × 75 m
+SHARE = float(vehicle_share())
+
+
+def radii_of_curvature(lat):
+    """Of the meridian and of the prime vertical on WGS84 [m]."""
+    a, e2 = 6378137.0, 0.00669437999014
+    w = 1 - e2 * np.sin(np.radians(lat)) ** 2
+    return a * (1 - e2) / w**1.5, a / np.sqrt(w)
+
+
+def degrees(points, reference=DELFT):
+    """Longitude and latitude of points (M, 2) [m] by the radii of curvature, good to a millimetre in a town."""
+    meridian, normal = radii_of_curvature(reference[1])
+    x, y = np.transpose(points).astype(float)
+    lon = reference[0] + np.degrees(x / (normal * np.cos(np.radians(reference[1]))))
+    return np.column_stack([lon, reference[1] + np.degrees(y / meridian)])
+
+
+def area_of_cars(city, layer):
+    return layer.sum() * city.cell**2
+
+
+def test_centres_of_columns():
+    at = column_centers(CITY)
+    assert at.shape == (4, 3, 2)
+    assert at[0, 0].tolist() == [105, -15]
+    assert at[3, 1].tolist() == [135, -5]
+
+
+def test_first_row_of_a_raster_lies_in_the_north_and_the_first_column_in_the_west():
+    raster = np.array([[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12]])  # as printed: north up
+    layer = raster_layer(CITY, raster, BOUNDS)
+    assert layer.shape == (4, 3)
+    assert layer[0, 2] == 1  # north-west
+    assert layer[3, 2] == 4  # north-east
+    assert layer[0, 0] == 9  # south-west
+    assert layer[3, 0] == 12
+    assert np.array_equal(layer, raster[::-1].T)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_each_column_reads_the_pixel_in_which_its_centre_lies(seed):
+    rng = np.random.default_rng(seed)
+    raster = rng.random(rng.integers(1, 12, 2))
+    west, north = 100 - rng.uniform(0, 30), 10 + rng.uniform(0, 30)
+    east, south = 140 + rng.uniform(0, 30), -20 - rng.uniform(0, 30)
+    layer = raster_layer(CITY, raster, (west, south, east, north))
+    wide, tall = (east - west) / raster.shape[1], (north - south) / raster.shape[0]
+    for i, j in np.ndindex(4, 3):
+        x, y = CITY.center_of((i, j, 0))[:2]
+        (found,) = [
+            raster[row, column]
+            for row, column in np.ndindex(raster.shape)
+            if west + column * wide <= x < west + (column + 1) * wide
+            and north - (row + 1) * tall < y <= north - row * tall
+        ]
+        assert layer[i, j] == found
+
+
+def test_geographic_raster_is_split_where_the_degrees_say():
+    (lon, _), (_, lat) = degrees([(50, 0), (0, 30)])
+    (west, south), (east, north) = degrees([(-20, -20), (120, 95)])
+    in_halves = [2 * lon - east, south, east, north]  # two pixels that meet 50 m east of the reference
+    layer = raster_layer(FIELD, [[1.0, 2.0]], in_halves, geographic=True)
+    assert (layer[:20] == 1).all()
+    assert (layer[20:] == 2).all()
+    upright = [west, 2 * lat - north, east, north]
+    layer = raster_layer(FIELD, [[1.0], [2.0]], upright, geographic=True)
+    assert (layer[:, :12] == 2).all()  # the second row lies in the south
+    assert (layer[:, 12:] == 1).all()
+
+
+def test_raster_that_doesnt_cover_the_city_is_refused_unless_there_is_a_fill():
+    raster = np.full((2, 2), 0.03)
+    small = (100, -20, 120, 10)
+    with pytest.raises(ValueError, match=r"nothing about 6 of the city's 12 columns .* larger raster, or .* fill"):
+        raster_layer(CITY, raster, small)
+    layer = raster_layer(CITY, raster, small, fill=0.001)
+    assert layer[:2] == pytest.approx(0.03)
+    assert layer[2:] == pytest.approx(0.001)
+    with pytest.raises(ValueError, match="12 of the city's 12 columns"):
+        raster_layer(CITY, raster, (-1000, -1000, -900, -900))
+
+
+def test_nan_in_a_raster_is_no_data():
+    raster = np.array([[1, 2, 3, 4], [5, np.nan, 7, 8], [9, 10, 11, 12]])
+    with pytest.raises(ValueError, match="values say nothing about 1 of the city's 12 columns"):
+        raster_layer(CITY, raster, BOUNDS)
+    layer = raster_layer(CITY, raster, BOUNDS, fill=0)
+    assert layer[1, 1] == 0
+    assert layer.sum() == np.nansum(raster)
+
+
+def test_whole_numbers_stay_what_they_are_and_the_fill_too():
+    layer = raster_layer(CITY, np.full((1, 1), 7, dtype=np.uint8), (100, -20, 130, 10), fill=0.5)
+    assert layer[:3].tolist() == [[7.0] * 3] * 3
+    assert layer[3].tolist() == [0.5] * 3
+
+
+inside = st.tuples(st.floats(15, 85), st.floats(15, 60))
+
+
+@given(inside, inside, st.floats(0.5, 20))
+def test_a_road_of_any_direction_keeps_its_area(start, end, width):
+    length = np.hypot(*np.subtract(end, start))
+    assume(length > 1)
+    layer = road_layer(FIELD, [[start, end]], width)
+    assert area_of_cars(FIELD, layer) == pytest.approx(width * length * SHARE, rel=1e-9)
+    assert (layer >= 0).all()
+    assert layer.max() <= SHARE * (1 + 1e-9)
+
+
+def test_a_narrow_road_on_a_coarse_map_keeps_its_cars():
+    coarse = City(np.zeros((4, 3, 1), bool), cell=25.0)
+    layer = road_layer(coarse, [[(12.5, 0), (12.5, 75)]], 3.0)
+    assert layer[0] == pytest.approx([SHARE * 3 / 25] * 3)
+    assert (layer[1:] == 0).all()
+
+
+def test_a_road_turns_without_losing_or_gaining_area():
+    bent = [(20, 20), (60, 20), (60, 50), (40, 60)]
+    length = np.linalg.norm(np.diff(bent, axis=0), axis=1).sum()
+    assert area_of_cars(FIELD, road_layer(FIELD, [bent], 6.0)) == pytest.approx(6 * length * SHARE, rel=1e-9)
+
+
+def test_columns_within_a_road_have_the_whole_share():
+    layer = road_layer(FIELD, [[(0, 37.5), (100, 37.5)]], 15.0)
+    assert layer[:, 12:18] == pytest.approx(SHARE)
+    assert (layer[:, :12] == 0).all()
+    assert (layer[:, 18:] == 0).all()
+
+
+def test_a_road_beyond_the_map_is_cut_off():
+    layer = road_layer(FIELD, [[(-500, 37.5), (500, 37.5)], [(-50, -50), (-50, 200)]], 5.0)
+    assert area_of_cars(FIELD, layer) == pytest.approx(5 * 100 * SHARE)
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_where_roads_overlap_the_busier_counts(order):
+    lines, widths, cars = [[(10, 30), (90, 30)], [(50, 10), (50, 70)]], [6.0, 8.0], [5.0, 0.1]
+    layer = road_layer(
+        FIELD, [lines[n] for n in order], [widths[n] for n in order], cars_per_km=[cars[n] for n in order]
+    )
+    busy, quiet = vehicle_share(5.0), vehicle_share(0.1)
+    assert area_of_cars(FIELD, layer) == pytest.approx(busy * 6 * 80 + quiet * (8 * 60 - 6 * 8), rel=1e-9)
+    i, j, _ = FIELD.cell_of((50, 30, 1))
+    assert layer[i, j] == pytest.approx(busy)
+
+
+def test_a_road_drawn_twice_counts_once():
+    line = [(10, 10), (80, 60)]
+    assert road_layer(FIELD, [line, line, line[::-1]], 7.0) == pytest.approx(road_layer(FIELD, [line], 7.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_roads_cover_what_their_union_covers(seed):
+    rng = np.random.default_rng(seed)
+    lines = rng.uniform((0, 0), (100, 75), (6, 2, 2))
+    widths = rng.uniform(2, 12, 6)
+    union = shapely.union_all(
+        [shapely.LineString(li).buffer(w / 2, cap_style="flat") for li, w in zip(lines, widths, strict=True)]
+    )
+    expected = SHARE * shapely.area(shapely.intersection(union, shapely.box(0, 0, 100, 75)))
+    assert area_of_cars(FIELD, road_layer(FIELD, lines, widths)) == pytest.approx(expected, rel=1e-9)
+
+
+def test_cars_and_lanes_set_the_share():
+    layer = road_layer(FIELD, [[(0, 37.5), (100, 37.5)]], 15.0, cars_per_km=20.0, lane_width=3.5)
+    assert layer.max() == pytest.approx(8.4 * 20 / 1000 / 3.5)
+    assert (road_layer(FIELD, [], 5.0) == 0).all()
+
+
+def test_geographic_roads_are_the_same_roads():
+    line = np.array([(10, 12), (70, 60), (90, 20)])
+    layer = road_layer(FIELD, [degrees(line)], 6.0, geographic=True)
+    assert layer == pytest.approx(road_layer(FIELD, [line], 6.0), abs=SHARE * 1e-3)
+    exact = road_layer(FIELD, [longitude_latitude(line, DELFT)], 6.0, geographic=True)
+    assert exact == pytest.approx(road_layer(FIELD, [line], 6.0), abs=SHARE * 1e-9)
+
+
+def square(west, south, top, bottom=0.0):
+    return Building.prism(
+        [(west, south), (west + 10, south), (west + 10, south + 10), (west, south + 10)], top, bottom=bottom
+    )
+
+
+@pytest.mark.parametrize("cell", [1.0, 2.5, 5.0])
+@pytest.mark.parametrize("floor", [0.0, 31.0])
+def test_shelter_under_buildings_is_that_of_their_height_and_not_of_their_voxels(cell, floor):
+    roofs = [6.0, 9.9, 10.0, 30.0]
+    buildings = [square(10 + 20 * n, 10, floor + roof, floor) for n, roof in enumerate(roofs)]
+    town = City.from_buildings(buildings, cell=cell, origin=(0, 0, floor), size=(90, 30, 40))
+    layer = shelter_layer(town, 0.25)
+    assert layer.shape == town.shape[:2]
+    for n, shelter in enumerate((0.5, 0.5, 0.75, 0.75)):
+        i, j, _ = town.cell_of((15 + 20 * n, 15, floor + 1))
+        assert layer[i, j] == shelter
+    assert ((layer == 0.25) == ~town.occupied.any(axis=2)).all()
+    assert (shelter_layer(town, high=6.0)[town.occupied.any(axis=2)] == 0.75).all()
+    assert (shelter_layer(town, high=31.0)[town.occupied.any(axis=2)] == 0.5).all()
+
+
+def test_shelter_of_a_voxel_only_city_goes_by_its_voxels():
+    occupied = np.zeros((3, 1, 6), bool)
+    occupied[0, 0, :4] = True  # 8 m
+    occupied[1, 0, 4] = True  # a bridge at 8 to 10 m
+    assert shelter_layer(City(occupied, cell=2.0))[:, 0].tolist() == [0.5, 0.75, 0.0]
+    occupied[0, 0] = True  # as high as the map
+    assert shelter_layer(City(occupied, cell=2.0))[:, 0].tolist() == [0.75, 0.75, 0.0]
+
+
+def test_building_too_low_for_a_voxel_shelters_all_the_same():
+    town = City.from_buildings([square(10, 10, 2.0)], cell=5.0, origin=(0, 0, 0), size=(30, 30, 20))
+    assert not town.occupied.any()
+    assert shelter_layer(town)[2:4, 2:4].tolist() == [[0.5, 0.5], [0.5, 0.5]]
+
+
+def test_open_ground_is_given_by_name_by_number_or_column_by_column():
+    for name, shelter in (("none", 0), ("sparse trees", 0.25), ("trees or low buildings", 0.5), ("industry", 1)):
+        assert (shelter_layer(CITY, name) == shelter).all()
+    assert (shelter_layer(CITY) == 0).all()
+    assert (shelter_layer(CITY, 0.6) == 0.6).all()
+    names = np.full(CITY.shape[:2], "none", dtype="<U32")
+    names[1, 2] = "high buildings"
+    layer = shelter_layer(CITY, names)
+    assert layer[1, 2] == 0.75
+    assert layer.sum() == 0.75
+    numbers = np.linspace(0, 1, 12).reshape(4, 3)
+    assert np.array_equal(shelter_layer(CITY, numbers), numbers)
+
+
+def test_layers_make_a_risk_map():
+    layers = RiskMap(
+        CITY,
+        raster_layer(CITY, [[POPULATION_DENSITY]], BOUNDS),
+        shelter_layer(CITY, "sparse trees"),
+        road_layer(CITY, [[(100, -5), (140, -5)]], 6.0),
+    )
+    assert layers.rate[2, 1, 1] - layers.rate[2, 0, 1] == pytest.approx(6.4e-5 * 3 * SHARE * 0.6)
+
+
+LINE = [(0, 0), (10, 10)]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: raster_layer(CITY, [1, 2], BOUNDS), r"values must have shape \(rows, columns\), got \(2,\)"),
+        (lambda: raster_layer(CITY, np.ones((2, 2, 3)), BOUNDS), r"values must have shape .* got \(2, 2, 3\)"),
+        (lambda: raster_layer(CITY, np.ones((0, 2)), BOUNDS), r"values must have shape .* got \(0, 2\)"),
+        (lambda: raster_layer(CITY, [["a"]], BOUNDS), "values must be a number or an array of numbers"),
+        (lambda: raster_layer(CITY, [[1]], (0, 0, 1)), "bounds must be .west, south, east, north. in increasing"),
+        (lambda: raster_layer(CITY, [[1]], (140, -20, 100, 10)), r"bounds must be .* increasing order, got \(140"),
+        (lambda: raster_layer(CITY, [[1]], (100, 10, 140, -20)), "bounds must be .* increasing order"),
+        (lambda: raster_layer(CITY, [[1]], (100, 10, np.nan, 20)), "bounds must be .* increasing order"),
+        (lambda: raster_layer(CITY, [[1]], "abcd"), "bounds must be a number or an array of numbers: got text"),
+        (lambda: raster_layer(CITY, [[1]], BOUNDS, fill=np.nan), "fill must be finite, got nan"),
+        (lambda: raster_layer(CITY, [[1]], BOUNDS, fill="0"), "fill must be a number .* got text, '0'"),
+        (lambda: raster_layer(CITY, [[1]], BOUNDS, fill=[0, 1]), "fill must be one number, got an array"),
+        (
+            lambda: raster_layer(CITY, [[1]], BOUNDS, geographic=True),
+            r"geographic=True needs a projection, but 'city' doesn't know .* set City.reference .* or give metres",
+        ),
+        (lambda: road_layer(CITY, [LINE], 5, geographic=True), "geographic=True needs a projection"),
+        (lambda: road_layer(CITY, LINE, 5), r"lines\[0\] must be at least two finite points .* got shape \(2,\)"),
+        (lambda: road_layer(CITY, [LINE, [(0, 0)]], 5), r"lines\[1\] must be .* got shape \(1, 2\)"),
+        (lambda: road_layer(CITY, [[(0, 0, 0), (1, 1, 1)]], 5), r"lines\[0\] must be .* got shape \(2, 3\)"),
+        (lambda: road_layer(CITY, [[(0, 0), (1, np.nan)]], 5), r"lines\[0\] must be at least two finite points"),
+        (lambda: road_layer(CITY, ["road"], 5), r"lines\[0\] must be a number or an array of numbers"),
+        (lambda: road_layer(CITY, [LINE], 0), "width must be finite and above 0, got 0"),
+        (lambda: road_layer(CITY, [LINE], [5, np.nan]), r"width must be one number or one for each of the 1 lines"),
+        (lambda: road_layer(CITY, [LINE], [np.nan]), "width must be finite and above 0, got nan"),
+        (lambda: road_layer(CITY, [LINE], "6 m"), "width must be a number .* got text, '6 m'"),
+        (lambda: road_layer(CITY, [LINE], 5, cars_per_km=-1), "cars_per_km must be finite and at least 0, got -1"),
+        (lambda: road_layer(CITY, [LINE], 5, cars_per_km=[1, 2]), "cars_per_km must be one number or one for each"),
+        (lambda: road_layer(CITY, [LINE], 5, cars_per_km=1000), "cars_per_km must leave cars on at most the whole"),
+        (lambda: road_layer(CITY, [LINE], 5, lane_width=0), "lane_width must be finite and above 0, got 0"),
+        (lambda: shelter_layer(CITY, "forest"), "ground must be one of 'none', 'sparse trees', .* got 'forest'"),
+        (lambda: shelter_layer(CITY, ["none", "sea"]), "ground must be one of .* got 'sea'"),
+        (lambda: shelter_layer(CITY, 1.5), r"ground must be from 0 to 1 \(0 none, 1 industry\), got 1.5"),
+        (lambda: shelter_layer(CITY, np.nan), "ground must be from 0 to 1 .* got nan"),
+        (lambda: shelter_layer(CITY, np.zeros((3, 4))), r"ground must have the city's ground plan \(4, 3\), got \(3"),
+        (lambda: shelter_layer(CITY, high=-1), "high must be finite and at least 0, got -1"),
+    ],
+)
+def test_wrong_questions_are_refused_by_name(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
