@@ -9,6 +9,9 @@ several ways that are worth keeping, cheaper or shorter; each is a label.
 
 import heapq
 import time
+from bisect import bisect_left
+from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +39,9 @@ MOVE_HEADING = np.where(
 
 MOVE_PITCH = np.abs(np.arctan2(MOVES[:, 2], np.hypot(MOVES[:, 0], MOVES[:, 1])))
 
+LEAST_PRICE = 1e-15
+"""Of the highest price, the least that a voxel costs: over a lake, where nobody is at risk, a short way is taken."""
+
 
 def least_risk(
     risk_map: RiskMap,
@@ -55,7 +61,8 @@ def least_risk(
     """The route of least cost among all over 26 neighbours that keep the limits.
 
     cost = w_r·∫ r ds/dx + w_l·L + w_s·∫ threat ds/dx with the weights `risk` [h], `length` [1/m] and `threat` [1/m].
-    Of routes that cost the same, the one is taken that the search finds first, and its order is fixed.
+    Of routes that cost the same, the one is taken that the search finds first, and its order is fixed; where a cell
+    costs nothing, a short one.
 
     Parameters
     ----------
@@ -98,7 +105,7 @@ def least_risk(
     if max_length is not None:
         checks.number("max_length", max_length)
         checks.positive("max_length", max_length)
-    limits = checked_limits(max_turn, max_pitch, min_clearance)
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
     price = price_per_cell(risk_map, risk, length, threat, drift)
     source, target = flyable_endpoints(risk_map, start, goal, min_clearance)
     query = query_of(risk_map, price, source, target, limits)
@@ -149,7 +156,14 @@ def pareto_front(
         If start or goal can't be flown from or to, or an argument is out of its range.
     """
     began = time.perf_counter()
-    limits = checked_limits(max_turn, max_pitch, min_clearance)
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
+    count = int(lengths) if isinstance(lengths, int | np.integer) else None
+    if count is not None:
+        checks.whole("lengths", count, least=2)
+    elif np.size(lengths) == 0:
+        raise ValueError("lengths is empty: give how many, or at least one length [m]")
+    else:
+        checks.positive("lengths", lengths)
     source, target = flyable_endpoints(risk_map, start, goal, min_clearance)
     query = query_of(risk_map, price_per_cell(risk_map, 1.0, 0.0, 0.0, drift), source, target, limits)
     by_length = city_lengths(query)
@@ -157,14 +171,12 @@ def pareto_front(
     shortest, least, _ = solve(by_length, True)
     if len(shortest) == 0:
         return [least_risk(risk_map, start, goal, max_turn=max_turn, max_pitch=max_pitch, min_clearance=min_clearance)]
-    if isinstance(lengths, int | np.integer):
-        checks.whole("lengths", int(lengths), least=2)
+    if count is None:
+        asked = checks.numbers("lengths", lengths).ravel() / city.cell
+    else:
         safest, _, _ = solve(query, True)
         longest = np.linalg.norm(np.diff(city.index_of(safest), axis=0), axis=1).sum()
-        asked = np.linspace(least, longest, int(lengths))
-    else:
-        checks.positive("lengths", lengths)
-        asked = np.atleast_1d(checks.numbers("lengths", lengths)) / city.cell
+        asked = np.linspace(least, longest, count)
     routes, expanded = constrained(query, by_length, np.unique(asked))
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
     return [
@@ -178,7 +190,8 @@ class Limits(NamedTuple):
     max_turn: float
     max_pitch: float
     min_clearance: float
-    heights: bool = True  # the map's safe_height and lowest_height
+    safe_height: float
+    lowest_height: float
 
 
 class Query(NamedTuple):
@@ -194,11 +207,11 @@ class Query(NamedTuple):
 
 def query_of(risk_map: RiskMap, price: np.ndarray, source: int, target: int, limits: Limits) -> Query:
     """The question with these limits; heading NO_HEADING allows every move, and so does a vertical move."""
-    open_air = risk_map.flyable if limits.heights else ~risk_map.city.occupied
     apart = np.abs(MOVE_HEADING - np.arange(STATES)[:, None]) * np.pi / 4
     turn = np.minimum(apart, 2 * np.pi - apart) <= limits.max_turn + 1e-9
     turn[NO_HEADING] = turn[:, MOVE_HEADING == NO_HEADING] = True
-    blocked = ~open_air | risk_map.city.blocked(limits.min_clearance)
+    flyable = replace(risk_map, safe_height=limits.safe_height, lowest_height=limits.lowest_height).flyable
+    blocked = ~flyable | risk_map.city.blocked(limits.min_clearance)
     return Query(blocked, price, limits.max_pitch + 1e-9 >= MOVE_PITCH, turn, source, target)
 
 
@@ -219,14 +232,14 @@ def price_per_cell(risk_map: RiskMap, risk: float, length: float, threat: float,
         price = price + risk * (risk_map.rate_ahead if drift else risk_map.rate)
     if threat > 0:
         price = price + threat * risk_map.threat
-    return price.reshape(len(price), -1)
+    return np.maximum(price, LEAST_PRICE * price.max() + 1e-300).reshape(len(price), -1)
 
 
-def checked_limits(max_turn: float, max_pitch: float, min_clearance: float) -> Limits:
+def checked_limits(risk_map: RiskMap, max_turn: float, max_pitch: float, min_clearance: float) -> Limits:
     for name, angle, most in (("max_turn", max_turn, np.pi), ("max_pitch", max_pitch, np.pi / 2)):
         checks.number(name, angle)
         checks.within(name, angle, 0.0, most + 1e-9, "rad (from degrees: numpy.radians)")
-    return Limits(max_turn, max_pitch, min_clearance)
+    return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, risk_map.lowest_height)
 
 
 def flyable_endpoints(
@@ -248,30 +261,69 @@ def flyable_endpoints(
 
 
 def what_binds(risk_map: RiskMap, query: Query, limits: Limits, max_length: float | None) -> str:
-    """Words for the limits that leave no route: those that alone, if loosened, would open one, and how far."""
+    """Words for what would open a route: each limit that does it alone, and how far to loosen it; else several."""
     price = city_lengths(query).price
+    any_length = np.finfo(float).max
+    most = any_length if max_length is None else max_length
 
-    def shortest(loosened: Limits) -> float:
-        loose = query_of(risk_map, price, query.source, query.target, loosened)
-        return solve(loose, True)[1] * risk_map.city.cell
+    def shortest(kept: Limits) -> float:
+        """Length of the shortest route that keeps other limits [m]."""
+        return solve(query_of(risk_map, price, query.source, query.target, kept), True)[1] * risk_map.city.cell
 
-    if max_length is not None and np.isfinite(shortest(limits)):
-        return f"max_length is {max_length:g} m, the shortest route has {shortest(limits):.2f} m"
+    def opens(kept: Limits, name: str, value: float) -> bool:
+        return shortest(kept._replace(**{name: value})) <= most
+
+    if np.isfinite(shortest(limits)):
+        return f"max_length is {max_length:g} m, the shortest route has {up(shortest(limits)):.2f} m"
+    looser = looser_values(risk_map, limits)
     cures = []
-    for name, values in (("max_turn", (45, 90, 135, 180)), ("max_pitch", (35.27, 45, 90))):
-        for degrees in values:
-            if np.isfinite(shortest(limits._replace(**{name: np.radians(degrees)}))):
-                cures.append(f"max_turn={degrees}°".replace("max_turn", name))
-                break
-    if limits.min_clearance > 0 and np.isfinite(shortest(limits._replace(min_clearance=0.0))):
-        cures.append(f"less min_clearance than {limits.min_clearance:g} m")
-    if np.isfinite(shortest(limits._replace(heights=False))):
-        cures.append(f"less safe_height than {risk_map.safe_height:g} m or lowest_height {risk_map.lowest_height:g} m")
+    for name, values in looser.items():
+        first = bisect_left(values, True, key=partial(opens, limits, name))
+        cures += [setting(name, value) for value in values[first : first + 1]]
     if cures:
         return "there would be one with " + ", or with ".join(cures)
-    if np.isfinite(shortest(Limits(np.pi, np.pi / 2, 0.0, heights=False))):
-        return "no limit alone closes the way; max_turn, max_pitch, min_clearance and the heights do it together"
-    return "obstacles close every way"
+    together = limits._replace(**{name: values[-1] for name, values in looser.items() if values})
+    if shortest(together) == np.inf:
+        return "obstacles close every way"
+    if shortest(together) > most:
+        most = any_length
+    for name in reversed(looser):
+        values = [getattr(limits, name), *looser[name]]
+        first = bisect_left(values, True, key=partial(opens, together, name))
+        together = together._replace(**{name: values[first]})
+    cures = [setting(*item) for item in together._asdict().items() if item not in limits._asdict().items()]
+    if max_length is not None and most == any_length:
+        cures.append(f"max_length={up(shortest(together)):.2f} m")
+    return "there would be one with " + " and ".join(cures)
+
+
+def looser_values(risk_map: RiskMap, limits: Limits) -> dict[str, list[float]]:
+    """For each limit the looser values that make a difference, the loosest last; lengths in whole centimetres."""
+    city = risk_map.city
+
+    def above(limit: float, degrees: tuple[float, ...]) -> list[float]:
+        return [angle for angle in np.radians(degrees).tolist() if angle > limit + 1e-9]
+
+    def below(limit: float, values: np.ndarray) -> list[float]:
+        return np.unique(np.floor(100 * values[values < limit]) / 100)[::-1].tolist()
+
+    return {
+        "max_turn": above(limits.max_turn, (45, 90, 135, 180)),
+        "max_pitch": above(limits.max_pitch, (35.27, 45, 90)),
+        "min_clearance": below(limits.min_clearance, city.clearance),
+        "safe_height": below(limits.safe_height, city.height_above_surface),
+        "lowest_height": below(limits.lowest_height, city.cell * (np.arange(city.shape[2]) + 0.5)),
+    }
+
+
+def setting(name: str, value: float) -> str:
+    """A limit with its value in the unit that people think in."""
+    return f"{name}={np.degrees(value):g}°" if name in ("max_turn", "max_pitch") else f"{name}={value:g} m"
+
+
+def up(length: float) -> float:
+    """A length rounded up to centimetres, so that a route of this length keeps it."""
+    return float(np.ceil(100 * length) / 100)
 
 
 def solve(query: Query, backward: bool) -> tuple[np.ndarray, float, int]:

@@ -1,0 +1,726 @@
+"""The exact planner against SciPy's Dijkstra over states, against exhaustive search, and against its own words."""
+
+import importlib
+import itertools
+import re
+import subprocess
+import sys
+from collections import defaultdict, deque
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+
+from uavlab.city import Building, City
+from uavlab.planners import least_risk, pareto_front
+from uavlab.planners.heap import open_list
+from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
+
+module = importlib.import_module("uavlab.planners.least_risk")  # the package gives the function this name
+
+OFFSETS = [offset for offset in itertools.product((-1, 0, 1), repeat=3) if any(offset)]
+COMPASS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
+UNDECIDED = len(COMPASS)  # the heading before the first leg that isn't vertical
+ANY_LIMITS = {"max_turn": np.pi, "max_pitch": np.pi / 2}
+WEIGHTS = [
+    {},
+    {"risk": 0.0, "length": 1.0},
+    {"risk": 0.0, "threat": 1.0},
+    {"risk": 0.0, "length": 0.5, "threat": 0.2},
+    {"risk": 1e6, "length": 0.3, "threat": 0.1},
+    {"drift": True},
+    {"risk": 3e6, "length": 0.1, "drift": True},
+]
+
+
+def angle_between(one, other):
+    """Between two directions in the plane [rad], by the scalar product."""
+    return np.arccos(np.clip(np.dot(one, other) / np.linalg.norm(one) / np.linalg.norm(other), -1, 1))
+
+
+def headings_after(heading, offset, max_turn):
+    """The heading after a move, as a list; an empty one where the move would turn too far."""
+    if offset[:2] == (0, 0):
+        return [heading]
+    turns = heading != UNDECIDED and angle_between(COMPASS[heading], offset[:2]) > max_turn + 1e-6
+    return [] if turns else [COMPASS.index(offset[:2])]
+
+
+def ways(flyable, max_turn, max_pitch):
+    """All moves between states, from the definition: states before and after, and the number of the offset."""
+    node = np.arange(flyable.size).reshape(flyable.shape)
+    before, after, moves = [], [], []
+    for number, offset in enumerate(OFFSETS):
+        if abs(offset[2]) / np.linalg.norm(offset) > np.sin(max_pitch) + 1e-6:
+            continue
+        here = tuple(slice(max(-o, 0), n - max(o, 0)) for o, n in zip(offset, flyable.shape, strict=True))
+        free = np.ones(node[here].shape, bool)
+        for corner in itertools.product(*({0, o} for o in offset)):
+            free &= flyable[tuple(slice(s.start + c, s.stop + c) for s, c in zip(here, corner, strict=True))]
+        there = tuple(slice(s.start + o, s.stop + o) for s, o in zip(here, offset, strict=True))
+        for heading in range(UNDECIDED + 1):
+            for turned in headings_after(heading, offset, max_turn):
+                before.append(9 * node[here][free] + heading)
+                after.append(9 * node[there][free] + turned)
+                moves.append(np.full(free.sum(), number))
+    return tuple(np.concatenate(parts) if parts else np.empty(0, int) for parts in (before, after, moves))
+
+
+def prices(risk_map, *, risk=1.0, length=0.0, threat=0.0, drift=False):
+    """Cost per cell, one row for each offset (26, nodes)."""
+    rate = risk_map.rate_ahead if drift else np.broadcast_to(risk_map.rate, (26, *risk_map.city.shape))
+    threats = risk_map.threat if threat else 0.0
+    return (risk * rate + length * risk_map.city.cell + threat * threats).reshape(26, -1)
+
+
+def allowed(risk_map, min_clearance=0.0):
+    return risk_map.flyable & (risk_map.city.clearance >= min_clearance - 1e-9)
+
+
+def costs_of(moves, price):
+    """Cost of each of the moves that `ways` gives: half of the way in each voxel."""
+    before, after, number = moves
+    return np.linalg.norm(OFFSETS, axis=1)[number] * (price[number, before // 9] + price[number, after // 9]) / 2
+
+
+def cheapest_by_scipy(moves, price, source, target):
+    states = 9 * price.shape[1]
+    graph = coo_array((costs_of(moves, price), moves[:2]), shape=(states, states)).tocsr()
+    return dijkstra(graph, indices=9 * source + UNDECIDED)[9 * target : 9 * target + 9].min()
+
+
+def random_map(rng):
+    """A small map with buildings, floating voxels, and layers of all kinds; in places there is nobody at all."""
+    shape = rng.integers(3, 9, 3)
+    cell, origin = rng.uniform(0.5, 5), rng.uniform(-100, 100, 3)
+    buildings = []
+    for number in range(rng.integers(1, 4)):
+        low = origin[:2] + rng.uniform(0, 0.8, 2) * shape[:2] * cell
+        (x0, y0), (x1, y1) = low, low + rng.uniform(1, 2.5, 2) * cell
+        outline = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        top = origin[2] + rng.uniform(0.5, 1.0) * shape[2] * cell
+        buildings.append(Building.prism(outline, top, bottom=origin[2], name=f"block {number}"))
+    solid = City.from_buildings(buildings, cell=cell, origin=origin, size=shape * cell).occupied
+    city = City(solid | (rng.random(shape) < rng.uniform(0, 0.3)), cell, origin, tuple(buildings))
+    return RiskMap(
+        city,
+        10 ** rng.uniform(-4, -1.5, shape[:2]) * (rng.random(shape[:2]) >= 0.2),
+        rng.choice((0, 0.25, 0.5, 0.75, 1), shape[:2]),
+        rng.random(shape[:2]) * 1e-4 * (rng.random(shape[:2]) < 0.3),
+        safe_height=rng.choice((0.0, 0.5, 1.0)) * cell,
+        lowest_height=rng.choice((0.0, 1.0)) * cell,
+    )
+
+
+def random_case(seed):
+    """A random map, limits, and a start and a goal that keep them."""
+    rng = np.random.default_rng(seed)
+    while True:
+        risk_map = random_map(rng)
+        limits = {
+            "max_turn": np.radians(rng.choice((0, 45, 60, 90, 135, 180))),
+            "max_pitch": np.radians(rng.choice((0, 36, 45, 60, 90, 90))),
+            "min_clearance": rng.choice((0.0, 0.0, 0.5, 1.0)) * risk_map.city.cell,
+        }
+        free = np.argwhere(allowed(risk_map, limits["min_clearance"]))
+        if len(free) > 1:
+            return risk_map, limits, risk_map.city.center_of(rng.permutation(free)[:2])
+
+
+def code(risk_map, point):
+    return int(risk_map.city.code_of(risk_map.city.cell_of(point)))
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_cost_is_that_of_scipy_s_dijkstra_over_states(seed):
+    risk_map, limits, ends = random_case(seed)
+    moves = ways(allowed(risk_map, limits["min_clearance"]), limits["max_turn"], limits["max_pitch"])
+    for weights in WEIGHTS:
+        price = prices(risk_map, **weights)
+        expected = cheapest_by_scipy(moves, price, *(code(risk_map, end) for end in ends))
+        for heuristic in ("backward", "zero"):
+            route = least_risk(risk_map, *ends, **limits, **weights, heuristic=heuristic)
+            assert route.cost == pytest.approx(expected, rel=1e-9, abs=1e-12 * price.max()), (weights, heuristic)
+            assert route.reached is bool(np.isfinite(expected))
+            assert (route.reason == "") is route.reached
+
+
+def test_maps_above_ask_for_all_kinds_of_routes():
+    reached, bent, steep, clear, long = 0, 0, 0, 0, 0
+    for seed in range(100):
+        risk_map, limits, ends = random_case(seed)
+        route = least_risk(risk_map, *ends, **limits)
+        free = least_risk(risk_map, *ends, **ANY_LIMITS)
+        reached += route.reached
+        bent += route.reached and route.cost > free.cost * (1 + 1e-9)
+        steep += route.reached and (abs(route.pitch) > 1.5).any()
+        clear += route.reached and limits["min_clearance"] > 0
+        long += len(route.points) > 5
+    assert 30 < reached < 90
+    assert min(bent, steep, clear, long) >= 10
+
+
+def keeps_limits(risk_map, route, *, max_turn, max_pitch, min_clearance=0.0):
+    """Whether all voxels along the route, and all of the boxes of its moves, may be flown, and all angles kept."""
+    city, free = risk_map.city, allowed(risk_map, min_clearance)
+    index = city.cell_of(route.points)
+    boxes = [
+        free[tuple(slice(min(a, b), max(a, b) + 1) for a, b in zip(here, there, strict=True))].all()
+        for here, there in itertools.pairwise(index.tolist())
+    ]
+    return (
+        free[tuple(city.voxels_along(route.points)[0].T)].all()
+        and all(boxes)
+        and np.array_equal(route.points, city.center_of(index))
+        and (np.abs(np.diff(index, axis=0)).max(axis=1) == 1).all()
+        and (route.turn <= max_turn + 1e-9).all()
+        and (np.abs(route.pitch) <= max_pitch + 1e-9).all()
+    )
+
+
+def cost_along(risk_map, route, *, risk=1.0, length=0.0, threat=0.0, drift=False):
+    """w_r·∫ r ds/dx + w_l·L + w_s·∫ threat ds/dx, measured on the route."""
+    threats = route.integral(risk_map.city, risk_map.threat) / risk_map.city.cell
+    return risk * risk_map.integral(route, drift=drift) + length * route.length + threat * threats
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_route_keeps_the_limits_and_costs_what_is_measured_on_it(seed):
+    risk_map, limits, ends = random_case(seed)
+    for weights in WEIGHTS:
+        route = least_risk(risk_map, *ends, **limits, **weights)
+        if route.reached:
+            assert keeps_limits(risk_map, route, **limits)
+            assert [code(risk_map, p) for p in route.points[[0, -1]]] == [code(risk_map, p) for p in ends]
+            small = 1e-12 * prices(risk_map, **weights).max()
+            assert route.cost == pytest.approx(cost_along(risk_map, route, **weights), rel=1e-9, abs=small)
+
+
+@pytest.mark.parametrize("drift", [False, True])
+@pytest.mark.parametrize(("number", "min_clearance"), [(0, 4.0), (1, 0.0), (2, 0.0), (3, 0.0)])
+def test_campus_routes_keep_the_limits_and_cost_what_is_measured_on_them(number, min_clearance, drift):
+    risk_map = campus(number)
+    for max_turn, max_pitch in ((60, 60), (45, 36), (90, 90)):
+        limits = {
+            "max_turn": np.radians(max_turn),
+            "max_pitch": np.radians(max_pitch),
+            "min_clearance": min_clearance,
+        }
+        route = least_risk(risk_map, *CAMPUS_FLIGHT, **limits, drift=drift)
+        assert keeps_limits(risk_map, route, **limits)
+        assert route.cost == pytest.approx(cost_along(risk_map, route, drift=drift), rel=1e-9)
+
+
+def campus(number):
+    """The reference campus, number 0, and random ones."""
+    return random_campus(number) if number else reference_campus()
+
+
+def test_sixty_degrees_allow_45_and_no_more():
+    routes = [least_risk(campus(0), *CAMPUS_FLIGHT, max_turn=np.radians(degrees)) for degrees in (45, 60, 89.9)]
+    assert len({route.cost for route in routes}) == 1
+    assert np.degrees(routes[0].turn.max()) == pytest.approx(45)
+
+
+@pytest.mark.parametrize(
+    ("limit", "values"),
+    [
+        ("max_turn", np.radians([180, 90, 45])),
+        ("max_pitch", np.radians([90, 45, 36])),
+        ("min_clearance", [0.0, 3.0, 4.3]),
+    ],
+)
+def test_tighter_limits_never_cost_less(limit, values):
+    costs = [least_risk(campus(0), *CAMPUS_FLIGHT, **{"max_turn": np.pi, limit: value}).cost for value in values]
+    assert costs[0] <= costs[1] <= costs[2]
+    assert costs[0] < costs[2] * 0.99
+
+
+def test_looking_back_from_the_goal_saves_four_expansions_of_five():
+    """Reference campus, and the median of 20 random ones."""
+    ratios = []
+    for number in range(21):
+        exact, plain = (least_risk(campus(number), *CAMPUS_FLIGHT, heuristic=name) for name in ("backward", "zero"))
+        assert exact.cost == pytest.approx(plain.cost, rel=1e-9)
+        ratios.append(plain.info["expanded"] / exact.info["expanded"])
+    assert ratios[0] > 5
+    assert np.median(ratios) > 4.5
+    assert min(ratios) > 3
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_second_search_walks_almost_straight_to_the_goal(number):
+    risk_map = campus(number)
+    limits = module.checked_limits(risk_map, module.MAX_TURN, module.MAX_PITCH, 0.0)
+    price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
+    query = module.query_of(risk_map, price, *(code(risk_map, end) for end in CAMPUS_FLIGHT), limits)
+    _, nodes = module.rest_of_cost(query, query.source, open_list(query.blocked.size))
+    route = least_risk(risk_map, *CAMPUS_FLIGHT)
+    assert len(route.points) - 1 <= route.info["expanded"] - nodes < 0.03 * nodes
+
+
+@pytest.mark.parametrize("number", range(21))
+def test_who_knows_of_the_drift_flies_at_less_risk(number):
+    """Reference campus and 20 random ones, each with the risk as it is: where wrecks land."""
+    risk_map = campus(number)
+    blind, aware = (least_risk(risk_map, *CAMPUS_FLIGHT, drift=drift) for drift in (False, True))
+    true = [risk_map.integral(route, drift=True) for route in (blind, aware)]
+    assert aware.cost == pytest.approx(true[1], rel=1e-9)
+    assert true[1] < 0.5 * true[0]
+
+
+def tradeoffs(moves, price, lengths, source, target):
+    """All (cost, length) of routes that no other route beats in both, by exhaustive label correction, by length."""
+    onward = defaultdict(list)
+    for before, after, cost, length in zip(*moves[:2], costs_of(moves, price), lengths[moves[2]], strict=True):
+        onward[before].append((after, cost, length))
+    kept = defaultdict(list)
+    kept[9 * source + UNDECIDED] = [(0.0, 0.0)]
+    waiting = deque([(9 * source + UNDECIDED, 0.0, 0.0)])
+    while waiting:
+        state, cost, length = waiting.popleft()
+        if (cost, length) not in kept[state]:
+            continue
+        for after, more, way in onward[state]:
+            new = cost + more, length + way
+            if not any(c <= new[0] * (1 + 1e-12) and w <= new[1] + 1e-9 for c, w in kept[after]):
+                kept[after] = [(c, w) for c, w in kept[after] if c < new[0] or w < new[1]] + [new]
+                waiting.append((after, *new))
+    ends = [label for heading in range(9) for label in kept[9 * target + heading]]
+    ends.sort(key=lambda label: (round(label[1], 6), label[0]))  # equal lengths, added up in another order, are equal
+    return [(c, w) for n, (c, w) in enumerate(ends) if all(c < other * (1 - 1e-12) for other, _ in ends[:n])]
+
+
+def constrained_case(seed):
+    """A tiny map, with all its trade-offs between risk and length [m]; some cannot be crossed."""
+    rng = np.random.default_rng(seed)
+    city = City(rng.random((5, 5, 3)) < rng.choice((0.05, 0.25)), rng.uniform(0.5, 5), rng.uniform(-100, 100, 3))
+    city.occupied[0, 0, 1] = city.occupied[4, 4, 1] = False
+    risk_map = RiskMap(city, 10 ** rng.uniform(-4, -1.5, (5, 5)), rng.choice((0, 0.5, 1), (5, 5)), safe_height=0.0)
+    limits = {
+        "max_turn": np.radians(rng.choice((45, 90, 180))),
+        "max_pitch": np.radians(rng.choice((0, 60, 90))),
+        "drift": bool(rng.random() < 0.3),
+    }
+    ends = city.center_of([(0, 0, 1), (4, 4, 1)])
+    moves = ways(risk_map.flyable, limits["max_turn"], limits["max_pitch"])
+    lengths = np.linalg.norm(OFFSETS, axis=1) * city.cell
+    codes = [code(risk_map, end) for end in ends]
+    return risk_map, ends, limits, tradeoffs(moves, prices(risk_map, drift=limits["drift"]), lengths, *codes)
+
+
+def same(routes, expected):
+    """Whether routes have these pairs of cost and length, one after the other."""
+    found = [(route.cost, route.length) for route in routes]
+    return len(found) == len(expected) and np.allclose(found, expected, rtol=1e-9, atol=0)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_within_each_length_the_risk_is_the_least(seed):
+    risk_map, ends, limits, best = constrained_case(seed)
+    if not best:
+        assert not least_risk(risk_map, *ends, **limits).reached
+        assert [route.reached for route in pareto_front(risk_map, *ends, **limits)] == [False]
+        return
+    every = [length for _, length in best]
+    for n, length in enumerate(every):
+        for allowance in (length, length * 1.0001, *every[n + 1 : n + 2]):
+            route = least_risk(risk_map, *ends, **limits, max_length=allowance)
+            expected = min(cost for cost, other in best if other <= allowance * (1 + 1e-9))
+            assert route.cost == pytest.approx(expected, rel=1e-9)
+            assert route.length <= allowance * (1 + 1e-9)
+            assert keeps_limits(risk_map, route, max_turn=limits["max_turn"], max_pitch=limits["max_pitch"])
+    assert same(pareto_front(risk_map, *ends, **limits, lengths=every), best)
+    assert same(pareto_front(risk_map, *ends, **limits, lengths=[*every[::-1], every[0] / 2, 99 * every[-1]]), best)
+    assert same([least_risk(risk_map, *ends, **limits)], best[-1:])
+    assert pareto_front(risk_map, *ends, **limits, lengths=[every[0] * 0.999]) == []
+    short = least_risk(risk_map, *ends, **limits, max_length=every[0] * 0.999)
+    assert not short.reached
+    assert short.cost == np.inf
+    assert f"max_length is {every[0] * 0.999:g} m, the shortest route has" in short.reason
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_front_of_a_number_of_lengths_spreads_from_the_shortest_to_the_safest(seed):
+    risk_map, ends, limits, best = constrained_case(seed)
+    for count in (2, 5, 50) if best else ():
+        asked = np.linspace(best[0][1], best[-1][1], count)
+        within = [[pair for pair in best if pair[1] <= length * (1 + 1e-9)] for length in asked]
+        assert same(pareto_front(risk_map, *ends, **limits, lengths=count), sorted({w[-1] for w in within})[::-1])
+
+
+def test_tiny_maps_above_have_choices_to_make():
+    choices = [len(constrained_case(seed)[3]) for seed in range(60)]
+    assert choices.count(0) >= 2
+    assert sum(count > 2 for count in choices) >= 15
+    assert max(choices) >= 8
+
+
+@pytest.mark.parametrize("drift", [False, True])
+@pytest.mark.parametrize("number", range(4))
+def test_campus_front_falls_from_the_shortest_route_to_the_safest(number, drift):
+    risk_map = campus(number)
+    front = pareto_front(risk_map, *CAMPUS_FLIGHT, drift=drift)
+    lengths, risks = [route.length for route in front], [route.cost for route in front]
+    assert len(front) >= 8
+    assert (np.diff(lengths) > 1e-6).all()
+    assert (np.diff(risks) < 0).all()
+    assert lengths[0] == pytest.approx(least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0).length, rel=1e-9)
+    assert risks[-1] == pytest.approx(least_risk(risk_map, *CAMPUS_FLIGHT, drift=drift).cost, rel=1e-9)
+    blind = least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0)
+    assert risks[0] <= risk_map.integral(blind, drift=drift) * (1 + 1e-9)
+    for route in front:
+        assert keeps_limits(risk_map, route, max_turn=np.pi / 3, max_pitch=np.pi / 3)
+        assert route.cost == pytest.approx(risk_map.integral(route, drift=drift), rel=1e-9)
+        again = least_risk(risk_map, *CAMPUS_FLIGHT, max_length=route.length, drift=drift)
+        assert again.cost == pytest.approx(route.cost, rel=1e-9)
+
+
+def test_front_of_one_length_is_one_route():
+    route = least_risk(campus(0), *CAMPUS_FLIGHT, max_length=160.0)
+    for lengths in (160.0, [160.0], [160.0, 160.0]):
+        assert same(pareto_front(campus(0), *CAMPUS_FLIGHT, lengths=lengths), [(route.cost, route.length)])
+
+
+def test_over_a_lake_equal_risk_means_the_shorter_way():
+    """Nobody there, so all ways cost the same: nothing."""
+    shore = np.full((30, 30), 0.01)
+    shore[:, 8:22] = 0.0
+    city, ends = City(np.zeros((30, 30, 12), bool), 5.0), ((12.5, 12.5, 32.5), (132.5, 132.5, 32.5))
+    nobody = least_risk(RiskMap(city, 0.0, 0.0), *ends)
+    assert nobody.length == pytest.approx(24 * 5 * 2**0.5)
+    assert nobody.cost == pytest.approx(0.0, abs=1e-290)
+    crossing, nudged = (least_risk(RiskMap(city, shore, 0.0), *ends, length=length) for length in (0.0, 1e-12))
+    assert crossing.cost == pytest.approx(nudged.cost, rel=1e-4)
+    assert crossing.length < 1.02 * nudged.length
+
+
+def made_of(occupied, **heights):
+    """Voxels of 2 m, one person per 100 m², and no heights to keep but the given ones."""
+    return RiskMap(City(occupied, 2.0), 0.01, 0.5, **({"safe_height": 0.0} | heights))
+
+
+def corridor(*, basement=False, **heights):
+    """One voxel wide and high, to the east, then north; with a basement everything below is free."""
+    occupied = np.ones((6, 3, 2 if basement else 1), bool)
+    occupied[:, 0, -1] = occupied[5, :, -1] = False
+    occupied[..., :-1] = False
+    return made_of(occupied, **heights)
+
+
+def shaft(*, bend=False):
+    """Two floors joined by a hole of a single voxel; the lower one is whole, or a corridor with a bend."""
+    occupied = np.zeros((6, 3, 3), bool)
+    occupied[:, :, 1] = True
+    occupied[5, 2, 1] = False
+    if bend:
+        occupied[:, :, :1] = corridor().city.occupied
+    return made_of(occupied)
+
+
+def ramp():
+    """One voxel wide, two high: no room for moves through corners."""
+    occupied = np.ones((6, 1, 6), bool)
+    for i in range(6):
+        occupied[max(i - 1, 0) : i + 2, 0, i] = False
+    return made_of(occupied)
+
+
+def tunnel(**heights):
+    """A wall with a hole at the bottom, three voxels wide and two high."""
+    occupied = np.zeros((9, 7, 6), bool)
+    occupied[4] = True
+    occupied[4, 2:5, :2] = False
+    return made_of(occupied, **heights)
+
+
+ROUND_THE_BEND, THROUGH_THE_WALL = ((1, 1, 1), (11, 5, 1)), ((1, 7, 7), (17, 7, 7))
+NOT_ARRIVING = {
+    "bend": (corridor(), ROUND_THE_BEND, {}, ["max_turn=90°"]),
+    "no turn": (made_of(np.zeros((3, 3, 1), bool)), ((1, 1, 1), (3, 5, 1)), {"max_turn": 0.0}, ["max_turn=45°"]),
+    "shaft": (shaft(), ((1, 1, 1), (1, 1, 5)), {"max_turn": np.pi}, ["max_pitch=90°"]),
+    "ramp": (ramp(), ((1, 1, 1), (11, 1, 11)), {"max_pitch": np.radians(40)}, ["max_pitch=45°"]),
+    "level": (made_of(np.zeros((6, 6, 4), bool)), ((1, 1, 1), (11, 11, 7)), {"max_pitch": 0.0}, ["max_pitch=35.27°"]),
+    "narrow": (tunnel(), ((1, 7, 3), (17, 7, 3)), {"min_clearance": 3.5}, ["min_clearance=3 m"]),
+    "low": (tunnel(safe_height=4.0), THROUGH_THE_WALL, {}, ["safe_height=3 m"]),
+    "lower": (tunnel(lowest_height=4.0), THROUGH_THE_WALL, {}, ["lowest_height=3 m"]),
+    "either": (
+        corridor(basement=True, lowest_height=3.0),
+        ((1, 1, 3), (11, 5, 3)),
+        {},
+        ["max_turn=90°", "lowest_height=1 m"],
+    ),
+    "bend, within a length": (corridor(), ROUND_THE_BEND, {"max_length": 14.0}, ["max_turn=90°"]),
+    "bend, too far": (corridor(), ROUND_THE_BEND, {"max_length": 13.0}, ["max_turn=90° and max_length=14.00 m"]),
+    "bend and shaft": (shaft(bend=True), ((1, 1, 1), (1, 1, 5)), {}, ["max_turn=90° and max_pitch=90°"]),
+    "low and narrow": (
+        tunnel(safe_height=4.0),
+        ((1, 7, 5), (17, 7, 7)),
+        {"min_clearance": 3.5},
+        ["min_clearance=1 m and safe_height=3 m"],
+    ),
+}
+
+
+def cures_in(reason):
+    """What would open a route, as lists of (name, value): "there would be one with a=1 m and b=2°, or with c=3"."""
+    _, _, words = reason.partition("there would be one with ")
+    found = [re.findall(r"(\w+)=([\d.]+)(°?)", cure) for cure in words.split(", or with ") if words]
+    return [{name: float(np.radians(float(v)) if degrees else v) for name, v, degrees in cure} for cure in found]
+
+
+def ask_with(risk_map, ends, limits, cure):
+    """The route with other limits or heights of the map."""
+    heights = {name: value for name, value in cure.items() if name.endswith("_height")}
+    others = {name: value for name, value in cure.items() if name not in heights}
+    return least_risk(replace(risk_map, **heights), *ends, **(limits | others))
+
+
+def helps_and_goes_no_further_than_it_must(cure, risk_map, ends, limits):
+    tighter = [cure | {name: cure[name] + (-0.02 if name.startswith("max") else 0.02)} for name in cure]
+    return ask_with(risk_map, ends, limits, cure).reached and not any(
+        ask_with(risk_map, ends, limits, close).reached for close in tighter
+    )
+
+
+@pytest.mark.parametrize("case", NOT_ARRIVING)
+def test_reason_says_what_would_open_a_route_and_it_does(case):
+    risk_map, ends, limits, cures = NOT_ARRIVING[case]
+    route = least_risk(risk_map, *ends, **limits)
+    assert not route.reached
+    assert route.cost == np.inf
+    assert route.points.shape == (0, 3)
+    assert route.reason.startswith(f"no route from ({ends[0][0]}.0, ")
+    assert route.reason.endswith("there would be one with " + ", or with ".join(cures))
+    for cure in cures_in(route.reason):
+        assert helps_and_goes_no_further_than_it_must(cure, risk_map, ends, limits)
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_every_named_cure_helps_on_random_maps(seed):
+    risk_map, limits, ends = random_case(seed)
+    if seed % 3 == 0:
+        limits["max_length"] = 1.2 * np.linalg.norm(ends[1] - ends[0])
+    route = least_risk(risk_map, *ends, **limits)
+    cures = cures_in(route.reason)
+    for cure in cures:
+        assert helps_and_goes_no_further_than_it_must(cure, risk_map, ends, limits)
+    if route.reached:
+        assert route.reason == ""
+    elif "max_length is" in route.reason:
+        length = float(re.search(r"shortest route has ([\d.]+) m", route.reason)[1])
+        assert least_risk(risk_map, *ends, **(limits | {"max_length": length})).reached
+        assert not least_risk(risk_map, *ends, **(limits | {"max_length": length - 0.02})).reached
+    elif not cures:
+        assert route.reason.endswith("obstacles close every way")
+        assert not least_risk(replace(risk_map, safe_height=0.0, lowest_height=0.0), *ends, **ANY_LIMITS).reached
+
+
+def test_maps_above_need_all_kinds_of_cures():
+    reasons = []
+    for seed in range(150):
+        risk_map, limits, ends = random_case(seed)
+        reasons.append(least_risk(risk_map, *ends, **limits).reason)
+    for words in ("max_turn=", "max_pitch=", "min_clearance=", "safe_height=", ", or with", " and ", "obstacles"):
+        assert sum(words in reason for reason in reasons) >= 2, words
+
+
+def test_walls_all_around_are_named():
+    occupied = np.zeros((7, 7, 7), bool)
+    occupied[1:6, 1:6, 1:6] = True
+    occupied[2:5, 2:5, 2:5] = False
+    for limits in ({}, {"max_length": 5.0}, ANY_LIMITS):
+        for ask in (least_risk, lambda *ends, max_length=0, **limits: pareto_front(*ends, **limits)[0]):
+            route = ask(made_of(occupied), (7, 7, 7), (1, 1, 1), **limits)
+            assert not route.reached
+            assert route.reason == "no route from (7.0, 7.0, 7.0) to (1.0, 1.0, 1.0): obstacles close every way"
+
+
+def test_front_that_no_route_leads_to_says_why():
+    (route,) = pareto_front(corridor(), *ROUND_THE_BEND)
+    assert not route.reached
+    assert route.reason.endswith("there would be one with max_turn=90°")
+    assert len(pareto_front(corridor(), *ROUND_THE_BEND, max_turn=np.pi / 2)) == 1
+
+
+OPEN = made_of(np.zeros((8, 8, 4), bool))
+ENDS = (1.0, 1.0, 1.0), (15.0, 15.0, 7.0)
+HIGH = replace(OPEN, safe_height=2.5, lowest_height=4.0)
+BOTH = (least_risk, pareto_front)
+
+
+def refuses(ask, message, *arguments, **options):
+    with pytest.raises(ValueError, match=message):
+        ask(*arguments, **options)
+
+
+@pytest.mark.parametrize("ask", BOTH)
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"max_turn": 60}, r"max_turn must be from 0 to 3.14159 rad \(from degrees: numpy.radians\), got 60"),
+        ({"max_turn": -0.1}, "max_turn must be from 0 to .* got -0.1"),
+        ({"max_turn": np.nan}, "max_turn must be from 0 to .* got nan"),
+        ({"max_turn": [0.5, 0.6]}, "max_turn must be one number"),
+        ({"max_turn": "60°"}, "max_turn must be a number"),
+        ({"max_pitch": 1.6}, "max_pitch must be from 0 to 1.5708 rad .* got 1.6"),
+        ({"max_pitch": -1}, "max_pitch must be from 0 to .* got -1"),
+        ({"max_pitch": np.nan}, "max_pitch must be from 0 to .* got nan"),
+        ({"min_clearance": -1.0}, "min_clearance must be a distance in metres, at least 0, got -1.0"),
+        ({"min_clearance": np.nan}, "min_clearance must be .* got nan"),
+    ],
+)
+def test_limits_out_of_range_are_refused(ask, options, message):
+    refuses(ask, message, OPEN, *ENDS, **options)
+
+
+@pytest.mark.parametrize("ask", BOTH)
+@pytest.mark.parametrize(
+    ("ends", "message"),
+    [
+        (((np.nan, 1, 1), ENDS[1]), "start must be finite"),
+        ((ENDS[0], (1, 1)), "goal must be three numbers"),
+        ((ENDS[0], (99, 1, 1)), "goal .* lies outside of the map: x 0 to 16, y 0 to 16, z 0 to 8 m"),
+        ((ENDS[0], (0.5, 0.5, 0.5)), "lie in the same voxel"),
+    ],
+)
+def test_ends_that_make_no_question_are_refused(ask, ends, message):
+    refuses(ask, message, OPEN, *ends)
+
+
+@pytest.mark.parametrize("ask", BOTH)
+def test_ends_that_may_not_be_flown_are_told_why_and_where_one_may(ask):
+    too_low = (
+        r"start \(1.0, 1.0, 1.0\) is too low: its voxel's centre is 1.0 m above what lies below, safe_height asks for "
+        r"2.5 m and lowest_height for 4 m above the ground; the nearest free point is \(1.0, 1.0, 5.0\)"
+    )
+    refuses(ask, too_low, HIGH, *ENDS)
+    refuses(ask, "goal .* is too low", HIGH, *ENDS[::-1])
+    refuses(ask, "start .* no voxel of the map is free", replace(OPEN, lowest_height=99.0), *ENDS)
+    house = Building.prism([(4, 4), (8, 4), (8, 8), (4, 8)], 6.0, name="town hall")
+    town = RiskMap(City.from_buildings([house], cell=2.0, origin=(0, 0, 0), size=(16, 16, 12)), 0.01, 0.5)
+    refuses(ask, "start .* lies in building 'town hall'", town, (6, 6, 3), (1, 1, 9))
+    refuses(ask, r"goal \(6.0, 6.0, 7.0\) is too low: its voxel's centre is 1.0 m above", town, (1, 1, 9), (6, 6, 7))
+    refuses(ask, "start .* is 1.00 m from the nearest obstacle", town, (3, 5, 5), (1, 1, 9), min_clearance=2.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"risk": 0.0}, "risk, length and threat are all 0: give at least one of them a weight above 0"),
+        ({"risk": -1.0}, "risk must be finite and at least 0, got -1"),
+        ({"length": np.inf}, "length must be finite and at least 0, got inf"),
+        ({"threat": np.nan}, "threat must be finite and at least 0, got nan"),
+        ({"threat": [1.0, 2.0]}, "threat must be one number"),
+        ({"heuristic": "octile"}, "heuristic must be 'backward' or 'zero', got 'octile'"),
+        ({"max_length": 0.0}, "max_length must be finite and above 0, got 0"),
+        ({"max_length": np.nan}, "max_length must be finite and above 0, got nan"),
+        ({"max_length": np.inf}, "max_length must be finite and above 0, got inf"),
+        ({"max_length": [10.0, 20.0]}, "max_length must be one number"),
+    ],
+)
+def test_weights_and_lengths_out_of_range_are_refused(options, message):
+    refuses(least_risk, message, OPEN, *ENDS, **options)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "message"),
+    [
+        (1, "lengths must be a whole number of at least 2, got 1"),
+        (0, "lengths must be a whole number of at least 2, got 0"),
+        ([], "lengths is empty"),
+        ([20.0, 0.0], "lengths must be finite and above 0, got 0"),
+        ([20.0, np.nan], "lengths must be finite and above 0, got nan"),
+        (-5.0, "lengths must be finite and above 0, got -5"),
+        ("many", "lengths must be a number"),
+    ],
+)
+def test_lengths_that_make_no_question_are_refused(lengths, message):
+    refuses(pareto_front, message, OPEN, *ENDS, lengths=lengths)
+    refuses(pareto_front, message, corridor(), *ROUND_THE_BEND, lengths=lengths)
+
+
+def test_threat_needs_buildings_that_the_city_knows():
+    refuses(least_risk, "city must know its buildings", tunnel(), *THROUGH_THE_WALL, threat=1.0)
+
+
+def test_ends_may_lie_anywhere_in_their_voxels():
+    route = least_risk(OPEN, (0.1, 1.9, 1.2), (15.9, 14.1, 7.3))
+    assert route.points[[0, -1]].tolist() == [list(end) for end in ENDS]
+
+
+@pytest.mark.parametrize("drift", [False, True])
+@pytest.mark.parametrize("seed", [1, 3])
+def test_compiled_and_plain_python_agree(seed, drift):
+    risk_map, ends, limits, best = constrained_case(seed)
+    kept = module.checked_limits(risk_map, limits["max_turn"], limits["max_pitch"], 0.0)
+    price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, drift)
+    query = module.query_of(risk_map, price, *(code(risk_map, end) for end in ends), kept)
+    by_length, count = module.city_lengths(query), query.blocked.size
+
+    def run(name, *arguments):
+        return getattr(module, name)(*arguments), getattr(module, name).py_func(*arguments)
+
+    rests = []
+    for question in (query, by_length):
+        for until in (question.source, module.NOWHERE):
+            fast, plain = run("rest_of_cost", question, until, open_list(count))
+            assert np.array_equal(fast[0], plain[0])
+            assert fast[1] == plain[1] > 10
+            rests.append(fast[0])
+    trees = []
+    for search in (module.search_states, module.search_states.py_func):
+        g, parent = np.empty(count * 9), np.zeros(count * 9, np.uint8)
+        found = search(query, rests[0], g, parent, open_list(count * 9))
+        trees.append((*found, g[parent > 0].tolist(), parent.tolist()))
+    assert trees[0] == trees[1]
+    limits_in_cells = np.array([length for _, length in best]) / risk_map.city.cell
+    fast, plain = run("search_labels", query, rests[1], rests[3], limits_in_cells)
+    for a, b in zip(fast, plain, strict=True):
+        assert np.array_equal(a, b)
+    assert len(fast[3]) >= 1
+    assert len({f(query, 3, 1, 2) for f in (module.edge, module.edge.py_func)}) == 1
+
+
+EVEN = """
+import numpy as np
+from uavlab.city import City
+from uavlab.planners import least_risk, pareto_front
+from uavlab.risk import RiskMap
+even = RiskMap(City(np.zeros((12, 12, 8), bool), 5.0), 0.01, 0.5, safe_height=0.0)
+even.__dict__["rate"] = np.full(even.city.shape, 1e-6)
+ends = (2.5, 2.5, 2.5), (57.5, 32.5, 27.5)
+routes = [least_risk(even, *ends), least_risk(even, *ends, heuristic="zero"), *pareto_front(even, *ends)]
+answer = repr([route.points.tolist() for route in routes])
+"""
+
+
+def test_of_many_equal_routes_the_same_one_is_taken_in_every_process():
+    answers = []
+    for _ in range(2):
+        scope = {}
+        exec(EVEN, scope)
+        answers.append(scope["answer"])
+    assert len(scope["routes"]) == 3
+    assert np.ptp([route.length for route in scope["routes"]]) < 1e-9
+    fresh = subprocess.run([sys.executable, "-c", EVEN + "print(answer)"], capture_output=True, text=True, check=True)
+    assert {*answers, fresh.stdout.strip()} == {answers[0]}
+
+
+def test_same_question_same_route_on_the_campus():
+    for options in ({}, {"drift": True}, {"max_length": 160.0}, {"risk": 0.0, "length": 1.0}):
+        first, second = (least_risk(campus(0), *CAMPUS_FLIGHT, **options) for _ in range(2))
+        assert np.array_equal(first.points, second.points)
+        assert first.cost == second.cost
+        assert first.info["expanded"] == second.info["expanded"]
+
+
+def test_asking_does_not_change_the_map():
+    risk_map = campus(0)
+    arrays = [risk_map.rate, risk_map.flyable, risk_map.threat, risk_map.rate_ahead, risk_map.city.occupied]
+    before = [array.copy() for array in arrays]
+    least_risk(risk_map, *CAMPUS_FLIGHT, length=0.1, threat=0.1, drift=True, min_clearance=3.0)
+    pareto_front(risk_map, *CAMPUS_FLIGHT, lengths=3)
+    assert all(np.array_equal(a, b) for a, b in zip(arrays, before, strict=True))
