@@ -5,7 +5,8 @@ import pytest
 
 from uavlab import plot
 from uavlab.city import City
-from uavlab.planners import astar
+from uavlab.planners import astar, least_risk, pareto_front
+from uavlab.risk import CAMPUS_FLIGHT, reference_campus
 from uavlab.route import Route
 
 
@@ -99,3 +100,44 @@ def test_empty_city_can_be_drawn():
     city = City(np.zeros((5, 5, 5), dtype=bool))
     assert plot.plan(city).axes
     assert plot.still(city).axes
+
+
+def test_risk_section_is_the_rate_on_a_scale_of_factors_with_what_is_too_low_hatched():
+    campus = reference_campus()
+    image = plot.risk(campus, 27.5).axes[0].images[0]
+    assert type(image.norm).__name__ == "LogNorm"
+    assert image.get_array()[3, 2] == pytest.approx(campus.rate[2, 3, 5])  # row y, column x
+    assert np.ma.getmaskarray(image.get_array())[18, 10]  # a building of 28 m
+    low = plot.risk(campus, 2.5).axes[0]
+    assert "too low hatched" in low.get_title()
+    assert any(getattr(drawn, "hatches", None) == ["////"] for drawn in low.collections)
+    with pytest.raises(ValueError, match="height must lie on the map, 0 to 80 m"):
+        plot.risk(campus, 80.5)
+
+
+def test_layers_show_people_shelter_and_cars_with_units():
+    campus = reference_campus()
+    figure = plot.layers(campus)
+    shown = [axes.images[0].get_array() for axes in figure.axes if axes.images]
+    for image, layer in zip(
+        shown, (1e3 * campus.population_density, campus.shelter, 1e6 * campus.vehicle_share), strict=True
+    ):
+        assert np.allclose(image.T, layer)
+    assert {"thousands of people per km²", "ground under cars [m² per km²]"} <= set(labels(figure))
+
+
+def test_front_draws_length_against_risk():
+    campus = reference_campus()
+    routes = pareto_front(campus, *CAMPUS_FLIGHT, lengths=4)
+    shortest = least_risk(campus, *CAMPUS_FLIGHT, risk=0, length=1)
+    axes = plot.front(routes, shortest).axes[0]
+    assert np.allclose(axes.lines[0].get_xydata(), [(route.length, route.cost) for route in routes])
+    assert axes.get_xlabel() == "length [m]"
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["Pareto front", "shortest, 140.9 m"]
+
+
+def test_still_paints_the_ground_with_the_risk():
+    campus = reference_campus(cell=10.0)
+    figure = plot.still(campus.city, risk=campus)
+    assert plot.RISK_LABEL in labels(figure)
+    assert len(figure.axes[0].collections[0].get_facecolor()) == 2 * 15 * 15

@@ -11,6 +11,7 @@ import umsgpack
 from uavlab import scene
 from uavlab.city import Building, City
 from uavlab.planners import astar, shortcut
+from uavlab.risk import RiskMap, reference_campus
 from uavlab.route import Route
 
 START, GOAL = (90, 18, 30), (20, 75, 75)
@@ -110,3 +111,37 @@ def test_notebook_gets_the_page_and_a_still_picture(table1, route):
 def test_wrong_question(table1, arguments, message):
     with pytest.raises(ValueError, match=message):
         scene.page(table1, Route(np.array([[1.0, 1, 1], [2, 2, 2]])), **arguments)
+
+
+def colors_of(command):
+    attribute = command["object"]["geometries"][0]["data"]["attributes"]["color"]
+    return np.frombuffer(bytes(attribute["array"].data), dtype=np.float32).reshape(-1, 3)
+
+
+def test_risk_paints_the_ground_and_a_slice_on_one_scale_with_a_color_bar():
+    campus = reference_campus()
+    page = scene.page(campus.city, risk=campus, slice_height=27.5)
+    commands = commands_of(page)
+    ground, cut = (commands[f"/meshcat/risk/{name}", "set_object"] for name in ("ground", "slice"))
+    assert len(vertices_of(ground)) == 6 * 30 * 30
+    assert len(vertices_of(cut)) == 6 * np.count_nonzero(campus.flyable[:, :, 5])  # buildings are left out
+    assert np.allclose(vertices_of(cut)[:, 2], 27.5)
+    lightness = colors_of(ground).sum(axis=1)[::6].reshape(30, 30)
+    assert lightness[28, 28] > lightness[2, 2] + 0.5  # the crowded square against the park
+    assert "linear-gradient" in page
+    assert "deaths per hour of flight" in page
+    assert len(page) < 450_000
+
+
+def test_a_map_without_anybody_can_still_be_drawn():
+    nobody = RiskMap(City(np.zeros((4, 4, 4), dtype=bool), 5.0), 0.0, 0.0)
+    assert "deaths per hour" in scene.page(nobody.city, risk=nobody)
+    assert scene.show(nobody.city, risk=nobody).still
+
+
+def test_a_slice_needs_a_risk_map_and_a_height_on_it(table1):
+    with pytest.raises(ValueError, match="slice_height needs risk"):
+        scene.page(table1, slice_height=30.0)
+    campus = reference_campus()
+    with pytest.raises(ValueError, match="height must lie on the map, 0 to 80 m"):
+        scene.page(campus.city, risk=campus, slice_height=90.0)

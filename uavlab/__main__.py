@@ -10,6 +10,7 @@ import html
 import io
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -151,12 +152,13 @@ def assumed_risk(city: "City") -> "RiskMap":
 def by_risk(
     risk_map: "RiskMap", start: np.ndarray, goal: np.ndarray, clearance: float, detour_percent: float
 ) -> list["Route"]:
-    """The route of least risk within a detour, and the shortest one beside it."""
+    """The route of least risk within a detour, and beside it the safest of the shortest."""
     from uavlab.planners import least_risk
 
     if not detour_percent >= 0:
         raise ValueError(f"--detour must be a percentage of at least 0, got {detour_percent:g}")
-    blind = least_risk(risk_map, start, goal, risk=0.0, length=1.0, min_clearance=clearance)
+    blind = least_risk(risk_map, start, goal, length=1.0, min_clearance=clearance)  # a metre outweighs all risk
+    blind = replace(blind, planner="shortest")
     if not blind.reached:
         return [blind]
     longest = blind.length * (1 + detour_percent / 100)

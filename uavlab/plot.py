@@ -66,7 +66,7 @@ def section(
     values: np.ndarray | None = None,
     *routes: Route,
     label: str = "clearance [m]",
-    log: bool = False,
+    norm: Normalize | None = None,
 ) -> Figure:
     """A horizontal section: buildings black, and values of the voxels at this height in colour.
 
@@ -81,8 +81,8 @@ def section(
         Seen from above.
     label : str
         Of the colour bar, with a unit.
-    log : bool
-        Colours in steps of factors, for values above 0 that span several powers of ten.
+    norm : matplotlib.colors.Normalize, optional
+        From values to colours; by default evenly over the values shown.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def section(
     k = level_of(city, height)
     figure, axes = new_figure(6.4, 5.4)
     layer = (city.clearance if values is None else np.asarray(values))[:, :, k]
-    image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL, norm=norm_of(log))
+    image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL, norm=norm)
     add_color_bar(figure, axes, image, label)
     axes.set_facecolor("black")
     draw_routes(axes, routes)
@@ -101,7 +101,9 @@ def section(
 
 
 def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
-    """The risk of flying at a height, on a scale of factors; buildings black, hatched where the UAV would be too low.
+    """The risk of flying at a height; buildings black, hatched where the UAV would be too low.
+
+    Colours are a scale of factors, the same at all heights.
 
     Parameters
     ----------
@@ -118,13 +120,13 @@ def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
     """
     city = risk_map.city
     k = level_of(city, height)
-    figure = section(city, height, risk_map.rate, *routes, label=RISK_LABEL, log=True)
+    figure = section(city, height, risk_map.rate, *routes, label=RISK_LABEL, norm=risk_norm(risk_map))
     too_low = ~(risk_map.flyable | city.occupied)[:, :, k]
     if too_low.any():
         axes = figure.axes[0]
+        axes.set_title(f"{city.name}, {height:g} m above the ground (too low hatched)")
         x, y = (city.origin[a] + city.cell * (np.arange(city.shape[a]) + 0.5) for a in range(2))
         axes.contourf(x, y, too_low.T, levels=[0.5, 1.5], colors="none", hatches=["////"])
-        axes.set_title(f"{axes.get_title()[:-1]}, too low hatched)")
     return finished(figure)
 
 
@@ -278,9 +280,8 @@ def still(
             polygons.append(ribbon)
             colors.append(np.tile(to_rgb(color), (len(ribbon), 1)))
     if risk is not None:
-        values = ground_risk(risk)
-        norm = LogNorm(values.min(), values.max())
-        paint = np.repeat(SEQUENTIAL(norm(values.ravel())), 2, axis=0)
+        norm = risk_norm(risk)
+        paint = np.repeat(SEQUENTIAL(norm(ground_risk(risk).ravel())), 2, axis=0)
         ground = layer_triangles(city, low[2]).reshape(-1, 3, 3)
         axes.add_collection3d(Poly3DCollection(ground, facecolors=paint, edgecolors=paint, lw=0.3, zorder=0))
         bar = figure.add_axes((0.08, 0.1, 0.24, 0.025))
@@ -298,6 +299,13 @@ def still(
     if routes:
         axes.legend(loc="upper left", fontsize=8)
     return finished(figure)
+
+
+def risk_norm(risk_map: RiskMap) -> LogNorm:
+    """From risk to colours by factors: from the least to the greatest above 0 where the UAV may fly."""
+    rates = risk_map.rate[risk_map.flyable & (risk_map.rate > 0)]
+    least, most = (rates.min(), rates.max()) if len(rates) else (1e-9, 1e-9)
+    return LogNorm(least, max(most, 1.01 * least), clip=True)
 
 
 def ground_risk(risk_map: RiskMap) -> np.ndarray:
@@ -383,10 +391,6 @@ def level_of(city: City, height: float) -> int:
         low, high = city.bounds[:, 2]
         raise ValueError(f"height must lie on the map, {low:g} to {high:g} m, got {height!r}")
     return k
-
-
-def norm_of(log: bool) -> Normalize:
-    return LogNorm() if log else Normalize()
 
 
 def new_figure(width: float, height: float) -> tuple[Figure, Axes]:

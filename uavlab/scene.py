@@ -144,11 +144,11 @@ def legend(city: City, routes: tuple[Route, ...], colors: list[str], risk: RiskM
     if any(len(route.points) > 1 for route in routes):
         lines.append("&#9679; start &nbsp; &#9650; goal")
     if risk is not None:
-        least, most = risk_range(risk)
+        norm = plot.risk_norm(risk)
         stops = ",".join(plot.sequential_color(share) for share in np.linspace(0, 1, 9))
         style = f"display:inline-block;width:9em;height:.8em;background:linear-gradient(90deg,{stops})"
         bar = f'<span style="{style}"></span>'
-        lines.append(f"{least:.1e} {bar} {most:.1e} deaths per hour of flight (scale of factors)")
+        lines.append(f"{norm.vmin:.1e} {bar} {norm.vmax:.1e} deaths per hour of flight (scale of factors)")
     return "<br>".join(lines)
 
 
@@ -209,22 +209,14 @@ def draw_city(scene: meshcat.Visualizer, city: City) -> None:
     draw_lines(scene["edges"], np.concatenate([building.edges() for building in city.buildings]), 0x555555)
 
 
-def risk_range(risk_map: RiskMap) -> tuple[float, float]:
-    """Least and greatest risk where the UAV may fly [1/h]."""
-    rates = risk_map.rate[risk_map.flyable]
-    rates = rates[rates > 0]
-    return (float(rates.min()), float(rates.max())) if len(rates) else (1e-12, 1e-11)
-
-
 def draw_risk(scene: meshcat.Visualizer, risk_map: RiskMap, slice_height: float | None) -> None:
     """The ground painted with the risk above it, and a slice at a height, both on one scale of factors."""
     city = risk_map.city
-    least, most = np.log(risk_range(risk_map))
+    norm = plot.risk_norm(risk_map)
 
     def paint(name: str, values: np.ndarray, shown: np.ndarray, height: float, opacity: float) -> None:
-        shares = (np.log(np.maximum(values, 1e-300)) - least) / max(most - least, 1e-9)
         triangles = plot.layer_triangles(city, height)[shown.ravel()].reshape(-1, 3, 3)
-        colors = np.repeat(plot.SEQUENTIAL(np.clip(shares, 0, 1)[shown])[:, :3], 6, axis=0)
+        colors = np.repeat(plot.SEQUENTIAL(norm(values[shown]))[:, :3], 6, axis=0)
         material = g.MeshBasicMaterial(vertexColors=True, transparent=opacity < 1, opacity=opacity, side=2)
         scene[name].set_object(mesh(triangles, colors), material)
 

@@ -17,13 +17,16 @@
 # stands in their place.
 
 # %%
+from dataclasses import replace
+
 import numpy as np
 
 from uavlab import plot, scene
 from uavlab.city import table1_city
 from uavlab.offsets import minimum_safe_distance
-from uavlab.planners import astar, shortcut
+from uavlab.planners import astar, least_risk, shortcut
 from uavlab.prediction import OffsetPredictor, make_dataset
+from uavlab.risk import CAMPUS_FLIGHT, reference_campus
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Weather, rain_force, wind_drag
 
@@ -134,6 +137,32 @@ plot.plan(city, straight, shortest)
 scene.show(city, straight, shortest, safe_distance=safe_distance)
 
 # %% [markdown]
+# ## Over people
+#
+# Walls are not the only concern. A UAV that fails falls on somebody, or on nobody: it depends on what it flies over.
+# The other two papers of this course, RISK-ACO and PSO-BAS, count deaths per hour of flight over each place of a
+# campus, from the people there, from what shelters them, and from how hard a wreck comes down. The shortest route
+# crosses two squares full of people. Which route has the least risk, if it may be 8 % longer?
+
+# %%
+# NBVAL_CHECK_OUTPUT
+campus = reference_campus()
+across = least_risk(campus, *CAMPUS_FLIGHT, length=1)  # a metre outweighs all risk
+across = replace(across, planner="safest of the shortest")
+around = least_risk(campus, *CAMPUS_FLIGHT, max_length=1.08 * across.length)  # only the risk counts
+for route in (across, around):
+    print(f"{route.length:.1f} m, {campus.fatalities(route):.1e} deaths per flight")
+saved = 1 - campus.integral(around) / campus.integral(across)
+print(f"{saved:.0%} less risk for {around.length / across.length - 1:.1%} more way")
+
+# %%
+assert saved > 0.8
+scene.show(campus.city, around, across, risk=campus)
+
+# %% [markdown]
+# Bright ground is where a fall would cost most, on a scale of factors. How such a map is made, what its numbers mean
+# and whether the papers' claims about it hold: [05 risk maps](05_risk_maps.ipynb).
+#
 # ## Your turn
 #
 # Raise the wind to 5 m/s, or the load to 1 kg. Move the goal. What happens when the distance is larger than half the
@@ -156,6 +185,7 @@ except ValueError as error:
 # | [02 the Pauta criterion](02_pauta.ipynb) | How far is "far enough", on one axis, in space, over a flight? |
 # | [03 prediction](03_predicting_the_disturbance.ipynb) | How well can a model foresee it? |
 # | [04 cities](04_cities.ipynb) | What does a planner see of a city, and what does the resolution cost? |
+# | [05 risk maps](05_risk_maps.ipynb) | Whom does a falling UAV hit, and what does it cost to fly around them? |
 # | [06 A*](06_astar.ipynb) | Why is A* exact, which estimate is best, and what is wrong with REPARE's Eq. 13? |
 #
 # All but this one end with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is

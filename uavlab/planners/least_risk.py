@@ -115,11 +115,12 @@ def least_risk(
         routes, expanded = constrained(query, city_lengths(query), np.array([max_length / risk_map.city.cell]))
         nodes, cost = routes[0] if routes else (np.empty(0, np.int64), np.inf)
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
+    name = "least risk" if length == threat == 0 else "shortest" if risk == threat == 0 else "least cost"
     if len(nodes) == 0:
         reason = f"no route from {show(start)} to {show(goal)}: {what_binds(risk_map, query, limits, max_length)}"
-        return Route(np.empty((0, 3)), "least risk", reached=False, reason=reason, cost=np.inf, info=info)
+        return Route(np.empty((0, 3)), name, reached=False, reason=reason, cost=np.inf, info=info)
     city = risk_map.city
-    return Route(city.center_of(city.index_of(nodes)), "least risk", cost=cost, info=info)
+    return Route(city.center_of(city.index_of(nodes)), name, cost=cost, info=info)
 
 
 def pareto_front(
