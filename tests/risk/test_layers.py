@@ -217,6 +217,16 @@ def test_shelter_under_buildings_is_that_of_their_height_and_not_of_their_voxels
     assert (shelter_layer(town, high=31.0)[town.occupied.any(axis=2)] == 0.5).all()
 
 
+@pytest.mark.parametrize("floor", [0.1, 31.3, -77.7])
+def test_rounding_makes_no_buildings_and_lowers_none(floor):
+    town = City.from_buildings(
+        [square(10.1, 10.1, floor + 10, floor)], cell=0.7, origin=(0.1, 0.1, floor), size=(35, 35, 21)
+    )
+    under = town.occupied.any(axis=2)
+    assert (shelter_layer(town)[under] == 0.75).all()
+    assert (shelter_layer(town)[~under] == 0).all()
+
+
 def test_shelter_of_a_voxel_only_city_goes_by_its_voxels():
     occupied = np.zeros((3, 1, 6), bool)
     occupied[0, 0, :4] = True  # 8 m
@@ -224,6 +234,7 @@ def test_shelter_of_a_voxel_only_city_goes_by_its_voxels():
     assert shelter_layer(City(occupied, cell=2.0))[:, 0].tolist() == [0.5, 0.75, 0.0]
     occupied[0, 0] = True  # as high as the map
     assert shelter_layer(City(occupied, cell=2.0))[:, 0].tolist() == [0.75, 0.75, 0.0]
+    assert shelter_layer(City(occupied, cell=2.0), high=12.0)[:, 0].tolist() == [0.75, 0.5, 0.0]
 
 
 def test_building_too_low_for_a_voxel_shelters_all_the_same():
