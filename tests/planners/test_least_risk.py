@@ -724,3 +724,12 @@ def test_asking_does_not_change_the_map():
     least_risk(risk_map, *CAMPUS_FLIGHT, length=0.1, threat=0.1, drift=True, min_clearance=3.0)
     pareto_front(risk_map, *CAMPUS_FLIGHT, lengths=3)
     assert all(np.array_equal(a, b) for a, b in zip(arrays, before, strict=True))
+
+
+def test_the_point_suggested_instead_of_one_in_a_building_is_flyable():
+    campus = reference_campus()
+    with pytest.raises(ValueError, match=r"start .* lies in building .*; the nearest free point is") as refused:
+        least_risk(campus, (57.5, 12.5, 22.5), CAMPUS_FLIGHT[1])
+    point = [float(part) for part in str(refused.value).rsplit("(", 1)[1].rstrip(")").split(",")]
+    assert campus.flyable[tuple(campus.city.cell_of(point))]
+    assert least_risk(campus, point, CAMPUS_FLIGHT[1]).reached

@@ -75,8 +75,10 @@ def distance_left(heuristic, di, dj, dk):
     return 0.0
 
 
-def node_at(city: City, point: npt.ArrayLike, argument: str, min_clearance: float = 0.0) -> int:
-    """The code of the voxel in which a start or a goal lies.
+def node_at(
+    city: City, point: npt.ArrayLike, argument: str, min_clearance: float = 0.0, flyable: np.ndarray | None = None
+) -> int:
+    """The code of the voxel in which a start or a goal lies; points to fly from instead are `flyable`, if it is given.
 
     Raises
     ------
@@ -94,18 +96,16 @@ def node_at(city: City, point: npt.ArrayLike, argument: str, min_clearance: floa
         ranges = ", ".join(f"{a} {lo:g} to {hi:g}" for a, lo, hi in zip("xyz", low, high, strict=True))
         raise ValueError(f"{argument} {show(position)} lies outside of the map: {ranges} m")
     index = tuple(city.cell_of(position))
-    allowed = ~city.blocked(min_clearance)
+    blocked = city.blocked(min_clearance)
     if city.occupied[index]:
-        raise ValueError(
-            f"{argument} {show(position)} lies in {city.building_at(position)}; "
-            f"{nearest_allowed(city, position, allowed)}"
-        )
-    if not allowed[index]:
-        raise ValueError(
-            f"{argument} {show(position)} is {city.clearance[index]:.2f} m from the nearest obstacle, "
-            f"min_clearance asks for {min_clearance:g} m; {nearest_allowed(city, position, allowed)}"
-        )
-    return int(city.code_of(index))
+        wrong = f"lies in {city.building_at(position)}"
+    elif blocked[index]:
+        clearance = city.clearance[index]
+        wrong = f"is {clearance:.2f} m from the nearest obstacle, min_clearance asks for {min_clearance:g} m"
+    else:
+        return int(city.code_of(index))
+    allowed = ~blocked if flyable is None else flyable & ~blocked
+    raise ValueError(f"{argument} {show(position)} {wrong}; {nearest_allowed(city, position, allowed)}")
 
 
 def nearest_allowed(city: City, position: np.ndarray, allowed: np.ndarray) -> str:
@@ -125,9 +125,18 @@ def nearest_allowed(city: City, position: np.ndarray, allowed: np.ndarray) -> st
         radius *= 2
 
 
-def endpoints(city: City, start: npt.ArrayLike, goal: npt.ArrayLike, min_clearance: float = 0.0) -> tuple[int, int]:
+def endpoints(
+    city: City,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    min_clearance: float = 0.0,
+    flyable: np.ndarray | None = None,
+) -> tuple[int, int]:
     """Codes of the start's and the goal's voxel; `ValueError` if one can't be flown from or to, or both are one."""
-    codes = node_at(city, start, "start", min_clearance), node_at(city, goal, "goal", min_clearance)
+    codes = (
+        node_at(city, start, "start", min_clearance, flyable),
+        node_at(city, goal, "goal", min_clearance, flyable),
+    )
     if codes[0] == codes[1]:
         raise ValueError(
             f"start {show(start)} and goal {show(goal)} lie in the same voxel: "

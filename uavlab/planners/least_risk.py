@@ -248,7 +248,7 @@ def flyable_endpoints(
 ) -> tuple[int, int]:
     """Codes of the start's and the goal's voxel; `ValueError` if the UAV may not fly there."""
     city = risk_map.city
-    codes = endpoints(city, start, goal, min_clearance)
+    codes = endpoints(city, start, goal, min_clearance, risk_map.flyable)
     for name, code, point in zip(("start", "goal"), codes, (start, goal), strict=True):
         if not risk_map.flyable.flat[code]:
             above = city.height_above_surface.flat[code]
