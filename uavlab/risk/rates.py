@@ -50,8 +50,8 @@ def impact_fatality(
     """Chance that a person who is hit dies (RISK-ACO Eq. 8, PSO-BAS Eq. 6).
 
     P(f) = 1 / (1 + √(α/β)·(β/E)^(1/(4 p_s))), computed through logarithms, so that no power overflows. At p_s = 0 it
-    takes its limit: 0 below β, 1 above it, 1/(1 + √(α/β)) at E = β. Below β, which kills hardly anybody, the formula has
-    shelter raise the chance.
+    takes its limit: 0 below β, 1 above it, 1/(1 + √(α/β)) at E = β. Below β the formula has shelter raise the chance,
+    which is then under 0.6 % anyway.
 
     Parameters
     ----------
