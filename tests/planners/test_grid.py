@@ -176,7 +176,8 @@ def test_bad_questions_are_refused_with_the_reason(ask, message):
 
 
 def test_prices_become_floats_of_the_city_s_shape():
-    price = checked_price(SMALL, np.arange(64).reshape(4, 4, 4)[::-1])
+    price, cheapest = checked_price(SMALL, np.arange(64).reshape(4, 4, 4)[::-1])
+    assert cheapest == 0
     assert price.dtype == float
     assert price.flags.c_contiguous
     assert price[0, 0, 0] == 48

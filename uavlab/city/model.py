@@ -143,6 +143,27 @@ class City:
         return clearance
 
     @cached_property
+    def wall_normal(self) -> np.ndarray:
+        """Unit vectors away from the nearest wall, (nx, ny, nz, 3): the direction of the clearance's gradient.
+
+        By central differences, so between two walls that are equally near it points along both; 0 where there is none.
+        """
+        clearance = np.where(np.isfinite(self.clearance), self.clearance, 0.0)
+        axes = [np.gradient(clearance, axis=a) if n > 1 else np.zeros(self.shape) for a, n in enumerate(self.shape)]
+        gradient = np.stack(axes, axis=-1)
+        size = np.linalg.norm(gradient, axis=-1, keepdims=True)
+        return np.divide(gradient, size, out=np.zeros_like(gradient), where=size > 1e-9)
+
+    def towards_wall(self, vector: npt.ArrayLike) -> np.ndarray:
+        """How much of a vector (3,) points towards the nearest wall, max(0, −v·n), (nx, ny, nz)."""
+        direction = np.asarray(vector, dtype=float)
+        if direction.shape != (3,) or not np.isfinite(direction).all():
+            raise ValueError(f"vector must be three finite numbers (east, north, up), got {vector!r}")
+        if not direction.any():
+            return np.zeros(self.shape)
+        return np.maximum(0.0, -self.wall_normal @ direction)
+
+    @cached_property
     def height_above_surface(self) -> np.ndarray:
         """Height of each centre above the next roof below it, else above the floor of the map, (nx, ny, nz) [m].
 

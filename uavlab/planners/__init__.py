@@ -1,7 +1,24 @@
 """Planners: from a city, a start and a goal to a `Route`."""
 
 from uavlab.planners.astar import astar, penalty_zone
+from uavlab.planners.hazard import hazard_astar, hazard_price
 from uavlab.planners.least_risk import least_risk, pareto_front
+from uavlab.planners.potential_field import potential_field, potential_forces, repulsion
+from uavlab.planners.repare import flight_conditions, repare, repare_price
 from uavlab.planners.shortcut import shortcut
 
-__all__ = ["astar", "least_risk", "pareto_front", "penalty_zone", "shortcut"]
+__all__ = [
+    "astar",
+    "flight_conditions",
+    "hazard_astar",
+    "hazard_price",
+    "least_risk",
+    "pareto_front",
+    "penalty_zone",
+    "potential_field",
+    "potential_forces",
+    "repare",
+    "repare_price",
+    "repulsion",
+    "shortcut",
+]

@@ -11,6 +11,7 @@ import time
 import numpy as np
 import numpy.typing as npt
 
+from uavlab import checks
 from uavlab.city import City
 from uavlab.compiled import compiled
 from uavlab.planners.grid import (
@@ -85,10 +86,9 @@ def astar(
     if as_printed and price is None:
         raise ValueError("as_printed needs a price: without a penalty zone Eq. 13 is plain A*")
     source, target = endpoints(city, start, goal, min_clearance)
-    prices = None if price is None else checked_price(city, price)
+    prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
     began = time.perf_counter()
     blocked = city.blocked(min_clearance)
-    cheapest = 1.0 if prices is None or as_printed else float(prices.min())
     g = room(np.empty, city.occupied.size, np.float64)
     parent = room(np.zeros, city.occupied.size, np.uint8)
     backwards = prices is not None and not as_printed and prices.flat[source] < prices.flat[target]
@@ -98,7 +98,7 @@ def astar(
         prices,
         as_printed,
         HEURISTICS[heuristic],
-        cheapest * TIE_BREAK,
+        (1.0 if as_printed else cheapest) * TIE_BREAK,
         first,
         last,
         g,
@@ -118,15 +118,17 @@ def astar(
     return Route(city.center_of(city.index_of(nodes[::-1] if backwards else nodes)), "A*", cost=cost, info=info)
 
 
-def penalty_zone(city: City, safe_distance: float, *, penalty: float, shape: str = "ball") -> np.ndarray:
+def penalty_zone(
+    city: City, safe_distance: npt.ArrayLike, *, penalty: npt.ArrayLike, shape: str = "ball"
+) -> np.ndarray:
     """Price per metre 1 + ω·O_risk: 1 in the open, more near obstacles (REPARE Eq. 12).
 
     Parameters
     ----------
     city : City
-    safe_distance : float
+    safe_distance : float or (nx, ny, nz) array
         D_min [m] (Eq. 7), typically 3.5 to 5.5: O_risk = 1 where an obstacle is nearer.
-    penalty : float
+    penalty : float or (nx, ny, nz) array
         ω, at least 0; typically 0.1 to 2.
     shape : {"ball", "ring"}
         "ball" measures the distance to the nearest surface. "ring" looks, as the paper does, only at the 26 points
@@ -143,17 +145,20 @@ def penalty_zone(city: City, safe_distance: float, *, penalty: float, shape: str
     ValueError
         If an argument is out of its range.
     """
-    if not (np.isfinite(safe_distance) and safe_distance > 0):
-        raise ValueError(f"safe_distance must be a distance in metres, above 0, got {safe_distance!r}")
-    if not (np.isfinite(penalty) and penalty >= 0):
-        raise ValueError(f"penalty must be finite and at least 0, got {penalty!r}")
+    distance, weight = checks.numbers("safe_distance", safe_distance), checks.numbers("penalty", penalty)
+    checks.positive("safe_distance", distance)
+    checks.not_negative("penalty", weight)
+    for name, values in (("safe_distance", distance), ("penalty", weight)):
+        if values.shape not in ((), city.shape):
+            raise ValueError(f"{name} must be one number or have the city's shape {city.shape}, got {values.shape}")
     if shape == "ball":
-        near = city.clearance < safe_distance - 1e-9 * city.cell
+        near = city.clearance < distance - 1e-9 * city.cell
     elif shape == "ring":
-        near = ring_meets_obstacle(city.occupied, max(1, math.ceil(safe_distance / city.cell - 0.5 - 1e-9)))
+        least = float(np.min(distance))
+        near = ring_meets_obstacle(city.occupied, max(1, math.ceil(least / city.cell - 0.5 - 1e-9)))
     else:
         raise ValueError(f"shape must be 'ball' or 'ring', got {shape!r}")
-    return 1.0 + penalty * near
+    return 1.0 + weight * near
 
 
 def ring_meets_obstacle(occupied: np.ndarray, radius: int) -> np.ndarray:

@@ -145,14 +145,15 @@ def endpoints(
     return codes
 
 
-def checked_price(city: City, price: npt.ArrayLike) -> np.ndarray:
-    """A price per metre as a float array of the city's shape."""
+def checked_price(city: City, price: npt.ArrayLike) -> tuple[np.ndarray, float]:
+    """A price per metre as a float array of the city's shape, and the cheapest."""
     checked = np.ascontiguousarray(price, dtype=float)
     if checked.shape != city.shape:
         raise ValueError(f"price must have the city's shape {city.shape}, got {checked.shape}")
-    if not (np.isfinite(checked).all() and (checked >= 0).all()):
+    cheapest = float(checked.min())
+    if not 0 <= cheapest <= checked.max() < np.inf:  # NaN fails too
         raise ValueError("price must be finite and at least 0 everywhere; use min_clearance to forbid voxels")
-    return checked
+    return checked, cheapest
 
 
 def show(point: npt.ArrayLike) -> str:

@@ -237,6 +237,9 @@ def price_per_cell(risk_map: RiskMap, risk: float, length: float, threat: float,
 
 
 def checked_limits(risk_map: RiskMap, max_turn: float, max_pitch: float, min_clearance: float) -> Limits:
+    checks.instance("risk_map", risk_map, RiskMap)
+    checks.number("min_clearance", min_clearance)
+    checks.finite("min_clearance", min_clearance)
     for name, angle, most in (("max_turn", max_turn, np.pi), ("max_pitch", max_pitch, np.pi / 2)):
         checks.number(name, angle)
         checks.within(name, angle, 0.0, most + 1e-9, "rad (from degrees: numpy.radians)")
@@ -248,6 +251,8 @@ def flyable_endpoints(
 ) -> tuple[int, int]:
     """Codes of the start's and the goal's voxel; `ValueError` if the UAV may not fly there."""
     city = risk_map.city
+    for name, point in (("start", start), ("goal", goal)):
+        checks.numbers(name, point)
     codes = endpoints(city, start, goal, min_clearance, risk_map.flyable)
     for name, code, point in zip(("start", "goal"), codes, (start, goal), strict=True):
         if not risk_map.flyable.flat[code]:

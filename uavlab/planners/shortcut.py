@@ -47,7 +47,7 @@ def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, mi
     """
     if not route.reached or len(route.points) < 2:
         return route
-    prices = None if price is None else checked_price(city, price)
+    prices = None if price is None else checked_price(city, price)[0]
     points = (route.points - city.origin) / city.cell
     blocked = city.blocked(min_clearance)
     best, before = cheapest_subset(points, blocked, prices)

@@ -1,0 +1,118 @@
+"""The hazard planner: A* that pays for the chance to touch a wall, then straight lines (beyond REPARE).
+
+REPARE forbids a zone softly: a metre just inside of it costs as much as one at the wall, one just outside nothing. But
+the chance that a gust throws the UAV against a wall falls smoothly with the distance, and Rice's formula says how
+fast. As a price per metre it lets a route pass a gap quickly where that is worth it, and keep off where it is not.
+"""
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.offsets import crossing_rate
+from uavlab.planners.astar import astar
+from uavlab.planners.shortcut import shortcut
+from uavlab.route import Route
+
+CRASH_PRICE = 3000.0
+"""λ [m]: how many metres of detour a crash is worth, when it is certain."""
+
+
+def hazard_price(
+    city: City,
+    sigma: float,
+    *,
+    uav_radius: float = 0.5,
+    mean_offset: npt.ArrayLike = (0.0, 0.0, 0.0),
+    speed: float = 5.0,
+    natural_frequency: float = 1.0,
+    crash_price: float = CRASH_PRICE,
+) -> np.ndarray:
+    """Price of a metre, 1 + λ·ν/v with Rice's rate ν = (ω_n/2π) exp(−u²/2σ²) at the margin u; kept for the next query.
+
+    Parameters
+    ----------
+    city : City
+    sigma : float
+        σ of the offset on one axis [m], above 0.
+    uav_radius : float
+        r [m], at least 0. The margin is u = clearance − r + μ·n, at least 0.
+    mean_offset : (3,) array
+        μ, where the steady wind holds the UAV, from its route [m]; n points away from the nearest wall.
+    speed : float
+        v over ground [m/s], above 0: who passes faster is exposed for less time.
+    natural_frequency : float
+        ω_n of the position control [rad/s], above 0.
+    crash_price : float
+        λ [m], at least 0.
+
+    Returns
+    -------
+    (nx, ny, nz) array
+        For `astar(..., price=...)` and `shortcut(..., price=...)`; copy it before you change it.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    for name, value in (("speed", speed), ("sigma", sigma), ("natural_frequency", natural_frequency)):
+        checks.number(name, value)
+        checks.positive(name, value)
+    for name, value in (("uav_radius", uav_radius), ("crash_price", crash_price)):
+        checks.number(name, value)
+        checks.not_negative(name, value)
+    mean = tuple(float(part) for part in checks.vectors(mean_offset=mean_offset)[0])
+    return cached_price(city, sigma, uav_radius, mean, crash_price * natural_frequency / speed)
+
+
+@lru_cache(8)
+def cached_price(
+    city: City, sigma: float, uav_radius: float, mean_offset: tuple[float, ...], crash_price: float
+) -> np.ndarray:
+    margin = np.minimum(city.clearance, 100.0 * sigma) - uav_radius - city.towards_wall(mean_offset)
+    return 1.0 + crash_price * crossing_rate(np.maximum(margin, 0.0), sigma)
+
+
+def hazard_astar(
+    city: City,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    *,
+    sigma: float,
+    any_angle: bool = True,
+    **hazard: float | npt.ArrayLike,
+) -> Route:
+    """The route of least length plus hazard, over 26 neighbours, then by straight lines at the same price.
+
+    Parameters
+    ----------
+    city : City
+    start, goal : (3,) arrays
+        Positions [m].
+    sigma : float
+        σ of the offset on one axis [m], above 0.
+    any_angle : bool
+        Join by straight lines what that makes no dearer, see `shortcut`.
+    **hazard
+        As for `hazard_price`.
+
+    Returns
+    -------
+    Route
+        `cost` is ∫ price ds [m].
+
+    Raises
+    ------
+    ValueError
+        If start or goal can't be flown from or to, or an argument is out of its range.
+    """
+    price = hazard_price(city, sigma, **hazard)  # type: ignore[arg-type]
+    route = astar(city, start, goal, price=price)
+    if any_angle:
+        route = shortcut(route, city, price=price)
+    return replace(route, planner="hazard A*")

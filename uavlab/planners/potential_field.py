@@ -1,0 +1,293 @@
+"""The artificial potential field: the goal pulls, obstacles push, and the UAV goes where the sum points (REPARE 2.3.2).
+
+It looks only at where it is. That makes it simple, lets it keep a distance to walls, and traps it wherever pull and
+push cancel: in front of a wall across the way, in a notch. Not arriving is found out and said, with the place.
+"""
+
+import math
+import time
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.compiled import compiled
+from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, endpoints, show
+from uavlab.planners.shortcut import line_cost
+from uavlab.route import Route
+
+ATTRACTIONS = ("conic", "quadratic")
+OBSTACLES = ("voxels", "surface")
+CLOSEST = 0.05
+"""The push of a wall that is touched would be infinite; it is taken at this distance [m]."""
+
+WINDOW = 100
+"""A continuous walk that is within two steps of where it was so many steps ago trembles on the spot."""
+
+
+class Field(NamedTuple):
+    """What pulls and pushes, as numbers for compiled code; lengths in metres from the map's origin."""
+
+    occupied: np.ndarray
+    cell: float
+    goal: np.ndarray
+    conic: bool
+    pull: float
+    push: float
+    reach: float
+    nearest_only: bool
+
+
+def potential_field(
+    city: City,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    *,
+    attraction: str = "conic",
+    obstacles: str = "voxels",
+    moves: str = "lattice",
+    pull: float = 1.0,
+    push: float = 5.0,
+    reach: float = 5.0,
+    step: float | None = None,
+    max_steps: int = 5000,
+    record: bool = False,
+) -> Route:
+    """Follow the resultant of attraction and repulsion from the start (REPARE Eqs 14-16).
+
+    F = F_tra + F_rep as vectors. F_tra = −k (x − x_goal), "quadratic", or of constant size k, "conic".
+    F_rep = Σ k_rep (1/D − 1/R)/D² ∇D over obstacles nearer than R. Printed are sizes without directions, which
+    can't steer, and a range D_min that may differ from R, see `repulsion`.
+
+    Parameters
+    ----------
+    city : City
+    start, goal : (3,) arrays
+        Positions [m]. On the lattice the route goes from the centre of the start's voxel to that of the goal's.
+    attraction : {"conic", "quadratic"}
+        Of constant size, or growing with the distance.
+    obstacles : {"voxels", "surface"}
+        Every occupied voxel in range pushes, from its nearest point; or only the nearest one.
+    moves : {"lattice", "continuous"}
+        To one of the 26 neighbours, the one nearest to the direction of F that is legal; or a step along F.
+    pull, push : float
+        k_tra and k_rep, above 0. The defaults give REPARE Table 2's lengths on its map.
+    reach : float
+        R [m], above 0: obstacles farther away don't push.
+    step : float, optional
+        Length of a continuous step [m]; half a cell by default.
+    max_steps : int
+        After so many it gives up.
+    record : bool
+        Keep the forces in `info["attraction"]` and `info["repulsion"]`, (N, 3) at the waypoints.
+
+    Returns
+    -------
+    Route
+        `cost` is the length; `info["steps"]` and `info["elapsed"]` [s]. If it is trapped, flies into an obstacle or
+        gives up, `reached` is False, `reason` says where, and the points are the way until there.
+
+    Raises
+    ------
+    ValueError
+        If start or goal can't be flown from or to, or an argument is out of its range.
+    """
+    if moves not in ("lattice", "continuous"):
+        raise ValueError(f"moves must be 'lattice' or 'continuous', got {moves!r}")
+    step = city.cell / 2 if step is None else step
+    checks.number("step", step)
+    checks.positive("step", step)
+    checks.whole("max_steps", max_steps, least=1)
+    source, target = endpoints(city, start, goal)
+    began = time.perf_counter()
+    field = field_of(city, np.asarray(goal, dtype=float), attraction, obstacles, pull, push, reach)
+    if moves == "lattice":
+        index = city.index_of([source, target])
+        nodes, outcome = walk_lattice(field._replace(goal=(index[1] + 0.5) * city.cell), index[0], index[1], max_steps)
+        points = city.center_of(nodes)
+    else:
+        points, outcome = walk_freely(field, np.asarray(start, dtype=float) - city.origin, float(step), max_steps)
+        points = points + city.origin
+    info: dict = {"steps": len(points) - 1, "elapsed": time.perf_counter() - began}
+    if record:
+        pulls, pushes, _ = forces_at(field, points - city.origin)
+        info |= {"attraction": pulls, "repulsion": pushes}
+    reason = REASONS[outcome].format(place=show(points[-1]), left=np.linalg.norm(points[-1] - goal), steps=max_steps)
+    length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    cost = np.inf if reason else length
+    return Route(points, "potential field", reached=not reason, reason=reason, cost=cost, info=info)
+
+
+ARRIVED, TRAPPED, CIRCLES, CRASHED, GAVE_UP = range(5)
+REASONS = (
+    "",
+    "stuck in a local minimum at {place}, {left:.1f} m from the goal: no move goes along the force",
+    "stuck in a local minimum at {place}, {left:.1f} m from the goal: it trembles there without getting on",
+    "flies into an obstacle at {place}, {left:.1f} m from the goal: the push is too weak or the step too long",
+    "gave up after {steps} steps at {place}, {left:.1f} m from the goal",
+)
+
+
+def potential_forces(
+    city: City,
+    points: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    *,
+    attraction: str = "conic",
+    obstacles: str = "voxels",
+    pull: float = 1.0,
+    push: float = 5.0,
+    reach: float = 5.0,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The field itself, for drawing: attraction (M, 3), repulsion (M, 3) and potential (M,) at points (M, 3) [m].
+
+    Arguments as for `potential_field`. The forces are minus the gradient of the potential.
+    """
+    at, aim = checks.vectors(points=points, goal=goal)
+    field = field_of(city, aim, attraction, obstacles, pull, push, reach)
+    return forces_at(field, np.atleast_2d(at) - city.origin)
+
+
+def field_of(
+    city: City, goal: np.ndarray, attraction: str, obstacles: str, pull: float, push: float, reach: float
+) -> Field:
+    """The arguments, checked."""
+    for name, value, known in (("attraction", attraction, ATTRACTIONS), ("obstacles", obstacles, OBSTACLES)):
+        if value not in known:
+            raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    for name, number in (("pull", pull), ("push", push), ("reach", reach)):
+        checks.number(name, number)
+        checks.positive(name, number)
+    return Field(
+        city.occupied, city.cell, goal - city.origin, attraction == "conic",
+        float(pull), float(push), float(reach), obstacles == "surface",
+    )  # fmt: skip
+
+
+def repulsion(distance: npt.ArrayLike, push: float, reach: float, *, safe_distance: float | None = None) -> np.ndarray:
+    """Size of the push of an obstacle, k_rep (1/D − 1/R)/D² within R (REPARE Eq. 15).
+
+    Parameters
+    ----------
+    distance : float or array
+        D [m], above 0.
+    push, reach : float
+        k_rep and R [m], above 0.
+    safe_distance : float, optional
+        D_min [m], to which the printed form reaches instead of R. If D_min < R the push jumps there; if D_min > R it
+        is negative in between, and the obstacle attracts.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not above 0.
+    """
+    for name, value in (("distance", distance), ("push", push), ("reach", reach)):
+        checks.positive(name, value)
+    end = reach if safe_distance is None else safe_distance
+    checks.positive("safe_distance", end)
+    distances = np.asarray(distance, dtype=float)
+    return np.where(distances <= end, push * (1 / distances - 1 / reach) / distances**2, 0.0)
+
+
+@compiled
+def force(field, point):
+    """Attraction (3,), repulsion (3,) and potential at a point (3,) [m]."""
+    cell, reach = field.cell, field.reach
+    to_goal = field.goal - point
+    left = math.sqrt((to_goal**2).sum())
+    if field.conic:
+        pull = to_goal * (field.pull / left) if left > 0 else to_goal
+        potential = field.pull * left
+    else:
+        pull = to_goal * field.pull
+        potential = 0.5 * field.pull * left * left
+    push = np.zeros(3)
+    pushed = 0.0
+    nearest = reach
+    away = np.empty(3)
+    low, high = np.empty(3, np.int64), np.empty(3, np.int64)
+    for axis in range(3):
+        low[axis] = max(math.floor((point[axis] - reach) / cell), 0)
+        high[axis] = min(math.floor((point[axis] + reach) / cell) + 1, field.occupied.shape[axis])
+    for a in range(low[0], high[0]):
+        for b in range(low[1], high[1]):
+            for c in range(low[2], high[2]):
+                if not field.occupied[a, b, c]:
+                    continue
+                away[0] = point[0] - min(max(point[0], a * cell), (a + 1) * cell)  # from the voxel's nearest point
+                away[1] = point[1] - min(max(point[1], b * cell), (b + 1) * cell)
+                away[2] = point[2] - min(max(point[2], c * cell), (c + 1) * cell)
+                distance = max(math.sqrt((away**2).sum()), CLOSEST)
+                if distance >= nearest:
+                    continue
+                if field.nearest_only:
+                    nearest = distance
+                    push[:] = 0.0
+                    pushed = 0.0
+                push += away * (field.push * (1 / distance - 1 / reach) / distance**3)
+                pushed += 0.5 * field.push * (1 / distance - 1 / reach) ** 2
+    return pull, push, potential + pushed
+
+
+@compiled
+def forces_at(field, points):
+    """`force` at each of the points (M, 3) [m from the map's corner]."""
+    pulls, pushes, potentials = np.empty((len(points), 3)), np.empty((len(points), 3)), np.empty(len(points))
+    for m in range(len(points)):
+        pulls[m], pushes[m], potentials[m] = force(field, points[m])
+    return pulls, pushes, potentials
+
+
+@compiled
+def walk_lattice(field, start, goal, most):
+    """Voxels (N, 3) from the start along the legal moves that point best along the force, and how it ended."""
+    nodes = np.empty((most + 1, 3), np.int64)
+    nodes[0] = start
+    seen = np.zeros(field.occupied.shape, np.bool_)
+    for n in range(most):
+        here = nodes[n]
+        if (here == goal).all():
+            return nodes[: n + 1], ARRIVED
+        if seen[here[0], here[1], here[2]]:  # the force has no memory: it would go round for ever
+            return nodes[: n + 1], CIRCLES
+        seen[here[0], here[1], here[2]] = True
+        pull, push, _ = force(field, (here + 0.5) * field.cell)
+        around = blocked_around(field.occupied, here[0], here[1], here[2])
+        best, most_along = -1, 1e-12
+        for move in range(26):
+            if not around & BOXES[move]:
+                along = ((pull + push) * MOVES[move]).sum() / LENGTHS[move]
+                if along > most_along * (1 + 1e-12):
+                    best, most_along = move, along
+        if best < 0:
+            return nodes[: n + 1], TRAPPED
+        nodes[n + 1] = here + MOVES[best]
+    return nodes, GAVE_UP
+
+
+@compiled
+def walk_freely(field, start, step, most):
+    """Points (N, 3) from the start by steps along the force, and how it ended."""
+    points = np.empty((most + 2, 3))
+    points[0] = start
+    for n in range(most):
+        here = points[n]
+        pull, push, _ = force(field, here)
+        resultant = pull + push
+        size = math.sqrt((resultant**2).sum())
+        if math.sqrt(((field.goal - here) ** 2).sum()) <= step:
+            points[n + 1] = field.goal
+            return points[: n + 2], ARRIVED
+        if size < 1e-9:
+            return points[: n + 1], TRAPPED
+        if n >= WINDOW and math.sqrt(((here - points[n - WINDOW]) ** 2).sum()) < 2 * step:
+            return points[: n + 1], CIRCLES
+        for axis in range(3):  # along the border of the map, where the force points out of it
+            edge = field.cell * field.occupied.shape[axis] * (1 - 1e-12)
+            points[n + 1, axis] = min(max(here[axis] + resultant[axis] * (step / size), 0.0), edge)
+        if np.isinf(line_cost(field.occupied, None, here / field.cell, points[n + 1] / field.cell)):
+            return points[: n + 1], CRASHED
+    return points[: most + 1], GAVE_UP

@@ -1,0 +1,323 @@
+"""REPARE: A* with a zone around buildings whose price follows the forces (REPARE Algorithm 1, Eqs 7-16).
+
+The paper's pseudo-code has no step that takes the cheapest node, no parents, and never uses the resultant force that it
+computes. Here it is A* with a price per metre, 1 + ω·O_risk: O_risk = 1 where an obstacle is nearer than D_min, and ω
+grows with the repulsion there, with a disturbance that pushes towards the wall, and with the load. Where the wind is
+steady the zone reaches farther on the side that it blows to. When the disturbance changes in flight, the rest of
+the route is planned again.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.planners.astar import astar, penalty_zone
+from uavlab.planners.grid import endpoints, nearest_allowed, show
+from uavlab.planners.potential_field import repulsion
+from uavlab.resilience import (
+    DISTURBANCES,
+    LOADS,
+    checked_class,
+    disturbance_class,
+    gust_force,
+    resilience_level,
+    safe_distance,
+)
+from uavlab.route import Route
+from uavlab.vehicle import LIGHT_QUADROTOR, UAV
+
+PENALTY = 2.0
+"""ω₀: what a metre in the zone costs more, before any force."""
+
+
+class Conditions(NamedTuple):
+    """What a load and a disturbance mean for planning."""
+
+    name: str
+    grounded: str
+    """Why it may not fly; empty if it may."""
+    safe_distance: float
+    """D_min [m]."""
+    wind: tuple[float, float, float] | None
+    """Mean wind [m/s]; None where only its class is known, so that it may come from any side."""
+    push: float
+    """Drag of the gusts over the thrust that is left against them, |F_dist|."""
+    load_ratio: float
+    """Weight over thrust, λ."""
+
+
+def repare(
+    city: City,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    *,
+    load: str = "light",
+    disturbance: Any = "mild",
+    uav: UAV = LIGHT_QUADROTOR,
+    reading: str = "table",
+    mean_offset: npt.ArrayLike = (0.0, 0.0, 0.0),
+    penalty: float = PENALTY,
+    force_weight: float = 1.0,
+    load_weight: float = 1.0,
+    shape: str = "ball",
+    interval: float = 1.0,
+    as_printed: bool = False,
+    record: bool = False,
+) -> Route:
+    """Plan a route that keeps D_min where it can, and replan in flight when the disturbance changes.
+
+    cost = Σ d·(1 + ω·O_risk), see `repare_price`.
+
+    Parameters
+    ----------
+    city : City
+    start, goal : (3,) arrays
+        Positions [m].
+    load : {"dead", "light", "moderate", "heavy"}
+        Class of the payload (REPARE Table 3).
+    disturbance : str, (3,) array, or callable
+        A class ("none", "mild", "moderate", "heavy"); or the mean wind, where the air moves to [m/s]; or a function of
+        the time in flight [s] that returns one of these.
+    uav : UAV
+        Its payload is replaced by the class of load.
+    reading : {"table", "physical"}
+        Of D_min, see `uavlab.resilience.safe_distance`.
+    mean_offset : (3,) array
+        μ, where a steady wind holds the UAV, from its route [m]: the zone is that much wider towards the wind.
+    penalty : float
+        ω₀, at least 0.
+    force_weight, load_weight : float
+        θ_F and θ_G of Eq. 16, at least 0.
+    shape : {"ball", "ring"}
+        Of the zone, see `penalty_zone`.
+    interval : float
+        How often the disturbance is looked at in flight [s], above 0.
+    as_printed : bool
+        Eq. 13 with the 26 points of the outer ring and a fixed ω₀: the resultant force isn't used, and the route
+        depends on the direction of travel.
+    record : bool
+        Keep the order of expansion of the last plan in `info["order"]`.
+
+    Returns
+    -------
+    Route
+        `cost` is Σ d·(1 + ω·O_risk) [m]; after replanning, of the last plan. `info["expanded"]`, `info["elapsed"]` [s],
+        `info["safe_distance"]` [m], and `info["plans"]`: when, where and for what it was planned. Conditions that
+        ground the UAV give `reached` False with the reason.
+
+    Raises
+    ------
+    ValueError
+        If a class is unknown, D_min reaches over start or goal, the disturbance is not finite, or another argument is
+        out of its range.
+    """
+    checks.number("interval", interval)
+    checks.positive("interval", interval)
+
+    def conditions_at(clock: float) -> Conditions:
+        return flight_conditions(
+            load, disturbance(clock) if callable(disturbance) else disturbance, uav, reading=reading, clock=clock
+        )
+
+    now = conditions_at(0.0)
+    endpoints(city, start, goal)
+    if now.grounded:
+        return Route(np.empty((0, 3)), "REPARE", reached=False, reason=f"grounded: {now.grounded}", cost=np.inf)
+    widening = tuple(float(part) for part in checks.vectors(mean_offset=mean_offset)[0])
+    weights = (float(penalty), float(force_weight), float(load_weight))
+    for name, point in (("start", start), ("goal", goal)):
+        refuse_swallowed(city, name, point, now.safe_distance, widening)
+
+    def plan(here: npt.ArrayLike, given: Conditions) -> Route:
+        if as_printed:
+            zone = penalty_zone(city, given.safe_distance, penalty=penalty, shape="ring")
+            return astar(city, here, goal, price=zone, heuristic="euclidean", as_printed=True, record=record)
+        return astar(city, here, goal, price=repare_price(city, given, widening, weights, shape), record=record)
+
+    route = plan(start, now)
+    if callable(disturbance) and route.reached:
+        return replanned(route, now, plan, conditions_at, uav.cruise_speed, interval)
+    return named(route, route.points, [Plan(0.0, tuple(route.points[:1].ravel()), now.name, now.safe_distance)])
+
+
+def replanned(
+    route: Route,
+    now: Conditions,
+    plan: Callable[[npt.ArrayLike, Conditions], Route],
+    conditions_at: Callable[[float], Conditions],
+    speed: float,
+    interval: float,
+) -> Route:
+    """Fly a route; where the conditions have changed at the first waypoint after an interval, plan the rest anew.
+
+    In flight a UAV may find itself nearer to a wall than the new D_min: then the dear zone drives it out.
+    """
+    goal = route.points[-1]
+    plans = [Plan(0.0, tuple(route.points[0]), now.name, now.safe_distance)]
+    flown, clock = [route.points[0]], 0.0
+    expanded, elapsed = route.info["expanded"], route.info["elapsed"]
+    while (flown[-1] != goal).any():
+        ahead = min(int(np.searchsorted(route.distance, speed * interval - 1e-9)), len(route.points) - 1)
+        flown.extend(route.points[1 : ahead + 1])
+        clock += float(route.distance[ahead]) / speed
+        route = replace(route, points=route.points[ahead:])
+        then = conditions_at(clock)
+        if then == now or (flown[-1] == goal).all():
+            continue
+        now = then
+        plans.append(Plan(clock, tuple(flown[-1]), now.name, now.safe_distance))
+        if now.grounded:
+            reason = f"grounded after {clock:.1f} s at {show(flown[-1])}: {now.grounded}"
+            return replace(named(route, flown, plans), reached=False, reason=reason, cost=np.inf)
+        route = plan(flown[-1], now)
+        expanded += route.info["expanded"]
+        elapsed += route.info["elapsed"]
+    return named(replace(route, info=route.info | {"expanded": expanded, "elapsed": elapsed}), flown, plans)
+
+
+def refuse_swallowed(
+    city: City, name: str, point: npt.ArrayLike, safe_distance: float, mean_offset: tuple[float, ...]
+) -> None:
+    """`ValueError` if a start or goal lies in the zone; it says by how much and which point would do."""
+    index = tuple(city.cell_of(point))
+    widened = max(0.0, -float(city.wall_normal[index] @ mean_offset)) if any(mean_offset) else 0.0
+    short = safe_distance + widened - float(city.clearance[index])
+    if short > 1e-9 * city.cell:
+        reach = safe_distance + city.towards_wall(mean_offset)
+        raise ValueError(
+            f"{name} {show(point)} is {city.clearance[index]:.2f} m from the nearest obstacle, {short:.2f} m nearer "
+            f"than D_min; {nearest_allowed(city, np.asarray(point, dtype=float), city.clearance >= reach)}"
+        )
+
+
+class Plan(NamedTuple):
+    """When, where and for what a route was planned."""
+
+    time: float
+    place: tuple[float, ...]
+    conditions: str
+    safe_distance: float
+
+
+def named(route: Route, points: npt.ArrayLike, plans: list[Plan]) -> Route:
+    """The route with the points flown, REPARE's name and its plans."""
+    info = route.info | {"plans": plans, "safe_distance": plans[-1].safe_distance}
+    return replace(route, points=np.asarray(points), planner="REPARE", info=info)
+
+
+def flight_conditions(
+    load: str,
+    disturbance: str | npt.ArrayLike,
+    uav: UAV = LIGHT_QUADROTOR,
+    *,
+    reading: str = "table",
+    clock: float = 0.0,
+) -> Conditions:
+    """What a load and a disturbance mean for planning.
+
+    Parameters
+    ----------
+    load, disturbance, uav, reading
+        As for `repare`; the disturbance is a class or a mean wind.
+    clock : float
+        Time in flight [s], for messages.
+
+    Returns
+    -------
+    Conditions
+
+    Raises
+    ------
+    ValueError
+        If a class is unknown, or the wind is not two or three finite numbers.
+    """
+    checked_class("load", load, LOADS)
+    loaded = uav.loaded(LOADS[load])
+    wind = None
+    if isinstance(disturbance, str):
+        kind, speed = checked_class("disturbance", disturbance, DISTURBANCES), DISTURBANCES[disturbance]
+        name = f"{load} load, {kind} disturbance"
+    else:
+        vector = checks.numbers("disturbance", disturbance)
+        if vector.shape not in ((2,), (3,)) or not np.isfinite(vector).all():
+            raise ValueError(
+                f"disturbance must be a class or a finite wind (east, north[, up]) [m/s]; "
+                f"after {clock:.1f} s it is {disturbance!r}"
+            )
+        wind = (float(vector[0]), float(vector[1]), float(vector[2]) if len(vector) == 3 else 0.0)
+        speed = float(np.linalg.norm(vector))
+        kind = disturbance_class(speed)
+        name = f"{load} load, wind {speed:.1f} m/s ({kind} disturbance)"
+    force, reserve = gust_force(loaded, speed), float(loaded.horizontal_reserve())
+    grounded = ""
+    if resilience_level(load, kind) == "grounded":
+        grounded = f"{load} load in {kind} disturbance (REPARE Table 3)"
+    elif force >= reserve:
+        grounded = f"gusts push with {force:.1f} N, the thrust left over holds {reserve:.1f} N"
+    distance = safe_distance(load, kind, reading=reading, uav=uav)
+    return Conditions(name, grounded, distance, wind, force / reserve, loaded.weight / loaded.thrust)
+
+
+def repare_price(
+    city: City,
+    for_conditions: Conditions,
+    mean_offset: tuple[float, ...] = (0.0, 0.0, 0.0),
+    weights: tuple[float, float, float] = (PENALTY, 1.0, 1.0),
+    shape: str = "ball",
+) -> np.ndarray:
+    """Price of a metre, 1 + ω(x)·O_risk(x), kept for the next query in the same conditions.
+
+    ω = ω₀·(1 + |F_rep| + θ_F·max(0, −F_dist·n) + θ_G·λ) / F_tra, n away from the nearest wall, |F_tra| = 1 (conic),
+    |F_rep| = k_rep (1/D − 1/D_min)/D² with k_rep = D_min³/4. O_risk = 1 where D < D_min + max(0, −μ·n). All forces are
+    numbers: F_dist is the drag of the gusts over the thrust left against them, λ the weight over the thrust.
+
+    Parameters
+    ----------
+    city : City
+    for_conditions : Conditions
+        D_min, the push of the gusts and the load ratio λ. Where the wind's direction is unknown the push counts as
+        if it went towards the wall.
+    mean_offset : (3,) tuple
+        μ [m].
+    weights : (ω₀, θ_F, θ_G)
+    shape : {"ball", "ring"}
+
+    Returns
+    -------
+    (nx, ny, nz) array
+        For `astar(..., price=...)` and `shortcut(..., price=...)`; copy it before you change it.
+
+    Raises
+    ------
+    ValueError
+        If a weight is negative or not finite.
+    """
+    return cached_price(city, for_conditions, mean_offset, weights, shape)
+
+
+@lru_cache(8)
+def cached_price(
+    city: City,
+    now: Conditions,
+    mean_offset: tuple[float, ...],
+    weights: tuple[float, float, float],
+    shape: str,
+) -> np.ndarray:
+    for name, weight in zip(("penalty", "force_weight", "load_weight"), weights, strict=True):
+        checks.number(name, weight)
+        checks.not_negative(name, weight)
+    penalty, force_weight, load_weight = weights
+    reach = now.safe_distance + city.towards_wall(mean_offset)
+    near = np.minimum(city.clearance, reach)
+    pushed = repulsion(np.maximum(near, city.cell / 2), now.safe_distance**3 / 4, now.safe_distance)
+    blown = np.asarray(now.push)
+    if now.wind is not None:
+        blown = now.push * city.towards_wall(now.wind) / max(float(np.linalg.norm(now.wind)), 1e-9)
+    omega = penalty * (1 + pushed + force_weight * blown + load_weight * now.load_ratio)
+    return penalty_zone(city, reach, penalty=omega, shape=shape)

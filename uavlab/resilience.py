@@ -1,0 +1,320 @@
+"""Resilience: how careful to be in which conditions, and what if they turn out worse (REPARE 2.1.3, 2.2.4, 3.3).
+
+Before the flight a table says how much of the resilience system to switch on for a load and a disturbance, and how far
+to keep from walls. During the flight offsets are observed: one beyond the boundary raises it, a calm that lasts lowers
+it again. A monitor chooses between two controllers: the basic one is quick, the advanced one safe.
+"""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from uavlab import checks
+from uavlab.offsets import minimum_safe_distance
+from uavlab.vehicle import LIGHT_QUADROTOR, UAV
+from uavlab.weather import wind_drag
+
+LOADS = {"dead": 0.0, "light": 0.25, "moderate": 0.6, "heavy": 1.0}
+"""Payload of each class of load [kg]. REPARE names the classes of Table 3 only; the masses are ours."""
+
+DISTURBANCES = {"none": 1.5, "mild": 6.0, "moderate": 7.5, "heavy": 9.0}
+"""Mean wind up to which each class of disturbance reaches [m/s]; ours too."""
+
+LEVELS = ("off", "lower", "intermediate", "advanced", "grounded")
+
+TABLE3 = {
+    "none": ("off", "off", "lower", "intermediate"),
+    "mild": ("lower", "lower", "intermediate", "advanced"),
+    "moderate": ("intermediate", "intermediate", "advanced", "advanced"),
+    "heavy": ("intermediate", "advanced", "grounded", "grounded"),
+}
+"""REPARE Table 3: the resilience factor by disturbance (row) and load (column, in the order of `LOADS`)."""
+
+GUST_FACTOR = 1.75
+STILL_OFFSET, STIFFNESS = 1.0, 8.5
+"""ξ₀ and the offset at which gusts eat the whole thrust reserve [m]; fitted to REPARE Table 4."""
+
+
+def resilience_level(load: str, disturbance: str) -> str:
+    """How much of the resilience system is switched on (REPARE Table 3).
+
+    Parameters
+    ----------
+    load : {"dead", "light", "moderate", "heavy"}
+    disturbance : {"none", "mild", "moderate", "heavy"}
+
+    Returns
+    -------
+    str
+        "off", "lower", "intermediate", "advanced" or "grounded". Table 4 calls light load in mild disturbance
+        "Intermediate"; this follows Table 3.
+
+    Raises
+    ------
+    ValueError
+        If a class is unknown.
+    """
+    return TABLE3[checked_class("disturbance", disturbance, DISTURBANCES)][
+        list(LOADS).index(checked_class("load", load, LOADS))
+    ]
+
+
+def safe_distance(load: str, disturbance: str, *, reading: str = "table", uav: UAV = LIGHT_QUADROTOR) -> float:
+    """Minimum safe distance D_min for a load and a disturbance (REPARE Table 4).
+
+    Parameters
+    ----------
+    load : {"dead", "light", "moderate", "heavy"}
+    disturbance : {"none", "mild", "moderate", "heavy"}
+    reading : {"table", "physical"}
+        Table 4 has three cases, and D_min is no function of the factor in Table 3: two "advanced" cases differ.
+        "table": D_min = 2 + L/2 + D with the numbers L, D = 0 … 3 of the classes, which gives the three.
+        "physical": D_min = ξ + D_uav/2 with ξ = ⌈ξ₀ + 8.5 m·F_gust/√(T² − (m g)²)⌉, the drag of the gusts over the
+        thrust that the load leaves; it gives them too, and says why a heavy load needs more room.
+    uav : UAV
+        For "physical"; without its payload, which the class of load replaces.
+
+    Returns
+    -------
+    float
+        D_min [m]. For conditions that ground the UAV it is what it would need.
+
+    Raises
+    ------
+    ValueError
+        If a class or reading is unknown, or the load can't be lifted.
+    """
+    checked_class("load", load, LOADS)
+    checked_class("disturbance", disturbance, DISTURBANCES)
+    if reading == "table":
+        return 2.0 + 0.5 * list(LOADS).index(load) + list(DISTURBANCES).index(disturbance)
+    if reading != "physical":
+        raise ValueError(f"reading must be 'table' or 'physical', got {reading!r}")
+    offset = np.ceil(gust_offset(uav.loaded(LOADS[load]), DISTURBANCES[disturbance]) - 1e-9)
+    return float(minimum_safe_distance(offset, uav.diameter))
+
+
+def gust_offset(uav: UAV, wind: float) -> float:
+    """Offset ξ₀ + 8.5 m·F_gust/reserve [m] of a UAV in a mean wind [m/s], before it is rounded up.
+
+    Raises
+    ------
+    ValueError
+        If the wind is negative or not finite.
+    """
+    checks.number("wind", wind)
+    checks.not_negative("wind", wind)
+    return float(STILL_OFFSET + STIFFNESS * gust_force(uav, wind) / uav.horizontal_reserve())
+
+
+def gust_force(uav: UAV, wind: float) -> float:
+    """Drag of the strongest gusts on a UAV that holds its place in a mean wind [m/s], in newtons."""
+    return float(wind_drag((GUST_FACTOR * wind, 0.0), (0.0, 0.0), uav.drag_area)[0])
+
+
+def load_class(payload: float) -> str:
+    """The lightest class of load that covers a payload [kg].
+
+    Raises
+    ------
+    ValueError
+        If the payload is negative, or heavier than the heaviest class.
+    """
+    checks.number("payload", payload)
+    checks.not_negative("payload", payload)
+    name = next((name for name, upper in LOADS.items() if payload <= upper), None)
+    if name is None:
+        raise ValueError(f"payload must be at most {LOADS['heavy']:g} kg, the heaviest class, got {payload:g}")
+    return name
+
+
+def disturbance_class(wind: float) -> str:
+    """The mildest class of disturbance that covers a mean wind [m/s]; "heavy" for any stronger one.
+
+    Raises
+    ------
+    ValueError
+        If the wind is negative or not a number.
+    """
+    checks.number("wind", wind)
+    checks.not_negative("wind", wind)
+    return next((name for name, upper in DISTURBANCES.items() if wind <= upper), "heavy")
+
+
+def checked_class(name: str, value: str, known: dict[str, float]) -> str:
+    if value not in known:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    return value
+
+
+class Change(NamedTuple):
+    """An entry of a log."""
+
+    time: float
+    """When [s]."""
+    value: str | float
+    """What holds from then on."""
+    reason: str
+
+
+@dataclass
+class ConditionCheck:
+    """The boundary of the offsets to reckon with, corrected by what is observed (REPARE 2.2.4).
+
+    An offset beyond the boundary raises it at once, to the next step above. It comes down by one step when for `hold`
+    seconds every offset has stayed below `release` times the next lower boundary, and never below the prediction.
+    The two thresholds lie apart, so that the boundary doesn't flutter.
+
+    Attributes
+    ----------
+    predicted : float
+        ξ before the flight [m], above 0.
+    step : float
+        By how much the boundary moves [m], above 0.
+    hold : float
+        How long it must be calm before it comes down [s], above 0.
+    release : float
+        Share of the lower boundary that counts as calm, between 0 and 1.
+    boundary : float
+        ξ that holds now [m].
+    log : list of Change
+        When it changed, to what, and why.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of its range.
+    """
+
+    predicted: float
+    step: float = 0.5
+    hold: float = 10.0
+    release: float = 0.8
+    boundary: float = field(init=False)
+    log: list[Change] = field(init=False, default_factory=list)
+    calm_since: float = field(init=False, default=-np.inf)
+
+    def __post_init__(self) -> None:
+        for name in ("predicted", "step", "hold"):
+            checks.number(name, getattr(self, name))
+            checks.positive(name, getattr(self, name))
+        checks.share("release", self.release)
+        self.boundary = float(self.predicted)
+
+    def observe(self, time: float, offset: float) -> float:
+        """Take an offset [m] observed at a time [s], and return the boundary that holds from now on [m].
+
+        Raises
+        ------
+        ValueError
+            If the offset is negative or not finite.
+        """
+        checks.number("offset", offset)
+        checks.not_negative("offset", offset)
+        lower = max(self.boundary - self.step, self.predicted)
+        if offset >= self.release * lower or self.calm_since == -np.inf:
+            self.calm_since = time
+        if offset > self.boundary:
+            raised = self.predicted + self.step * np.ceil((offset - self.predicted) / self.step - 1e-9)
+            self.change(time, float(raised), f"an offset of {offset:.2f} m exceeds {self.boundary:g} m")
+        elif lower < self.boundary and time - self.calm_since >= self.hold:
+            self.change(time, lower, f"calm for {self.hold:g} s")
+        return self.boundary
+
+    def change(self, time: float, boundary: float, reason: str) -> None:
+        self.boundary = boundary
+        self.calm_since = time
+        self.log.append(Change(time, boundary, reason))
+
+
+class Controller(NamedTuple):
+    """How the UAV is flown."""
+
+    name: str
+    speed_share: float
+    """Of the cruise speed."""
+    natural_frequency: float
+    """ω_n of the position control [rad/s]: offsets of white gusts shrink as ω_n^(−3/2)."""
+
+
+BASIC = Controller("basic", 1.0, 1.0)
+ADVANCED = Controller("advanced", 0.5, 1.6)
+
+
+@dataclass
+class Monitor:
+    """Watches the flight and chooses the controller (REPARE 2.1.3): quick as long as it can be, safe when it must.
+
+    It switches to the advanced controller when the boundary of `check` plus half the body no longer fits between UAV
+    and wall, or when the level of resilience asks for it; and back when there has been `spare` metres of room for
+    `hold` seconds.
+
+    Attributes
+    ----------
+    check : ConditionCheck
+    uav_diameter : float
+        [m], above 0.
+    level : str
+        One of `LEVELS`; "advanced" keeps the advanced controller on, "off" the basic one, "grounded" is refused.
+    spare : float
+        Room beyond what is needed before it switches back [m], above 0.
+    hold : float
+        For how long [s], above 0.
+    controller : Controller
+        The one that flies now.
+    log : list of Change
+        The switches.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of its range, or the level is "grounded".
+    """
+
+    check: ConditionCheck
+    uav_diameter: float
+    level: str = "lower"
+    spare: float = 0.5
+    hold: float = 5.0
+    controller: Controller = field(init=False, default=BASIC)
+    log: list[Change] = field(init=False, default_factory=list)
+    roomy_since: float = field(init=False, default=np.inf)
+
+    def __post_init__(self) -> None:
+        for name in ("uav_diameter", "spare", "hold"):
+            checks.number(name, getattr(self, name))
+            checks.positive(name, getattr(self, name))
+        if self.level not in LEVELS:
+            raise ValueError(f"level must be one of {', '.join(map(repr, LEVELS))}, got {self.level!r}")
+        if self.level == "grounded":
+            raise ValueError("level is 'grounded': there is no flight to watch; wait, or carry less")
+        if self.level == "advanced":
+            self.controller = ADVANCED
+
+    def observe(self, time: float, offset: float, clearance: float) -> Controller:
+        """Take offset and clearance [m] observed at a time [s], and return the controller for the next moment.
+
+        Raises
+        ------
+        ValueError
+            If an observation is negative or not a number.
+        """
+        checks.number("clearance", clearance)
+        boundary = self.check.observe(time, offset)
+        if self.level in ("off", "advanced"):
+            return self.controller
+        room = clearance - float(minimum_safe_distance(boundary, self.uav_diameter))
+        if room < self.spare:
+            self.roomy_since = np.inf
+        elif self.roomy_since == np.inf:
+            self.roomy_since = time
+        if room < 0 and self.controller is BASIC:
+            self.switch(time, ADVANCED, f"{-room:.2f} m short of the distance to keep")
+        elif self.controller is ADVANCED and time - self.roomy_since >= self.hold:
+            self.switch(time, BASIC, f"room for {self.hold:g} s")
+        return self.controller
+
+    def switch(self, time: float, controller: Controller, reason: str) -> None:
+        self.controller = controller
+        self.log.append(Change(time, controller.name, reason))
