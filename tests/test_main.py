@@ -80,7 +80,8 @@ def test_no_way_is_an_answer_with_its_own_exit_code(tmp_path, capsys):
     ("arguments", "message"),
     [
         (["--out", "no/such/folder/page.html"], "can't write no/such/folder/page.html: No such file or directory"),
-        (["--city", "campus", "--detour", "-3"], "--detour must be a percentage of at least 0, got -3"),
+        (["--city", "campus", "--detour", "-3"], "--detour must be a percentage, finite and at least 0, got -3"),
+        (["--city", "campus", "--detour", "inf"], "--detour must be a percentage, finite and at least 0, got inf"),
         (["--city", "nowhere"], "--city nowhere: neither a known name (table1, campus) nor a file"),
         (["--start", "65,20,30"], "start (65.0, 20.0, 30.0) lies in building '1 notch'"),
         (["--cell", "-1"], "cell must be the edge of a voxel in metres, above 0, got -1.0"),

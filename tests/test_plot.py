@@ -1,12 +1,14 @@
 """Figures: axes with units, equal scales, and data that is the route's."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from uavlab import plot
+from uavlab import plot, scene
 from uavlab.city import City
 from uavlab.planners import astar, least_risk, pareto_front
-from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
 from uavlab.route import Route
 
 
@@ -134,6 +136,54 @@ def test_front_draws_length_against_risk():
     assert np.allclose(axes.lines[0].get_xydata(), [(route.length, route.cost) for route in routes])
     assert axes.get_xlabel() == "length [m]"
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["Pareto front", "shortest, 140.9 m"]
+
+
+def test_front_without_a_route_is_refused_with_its_reason_and_no_other_route_is_left_out():
+    campus = reference_campus()
+    shortest = least_risk(campus, *CAMPUS_FLIGHT, risk=0, length=1)
+    none = least_risk(campus, *CAMPUS_FLIGHT, max_length=100.0)
+    for routes, message in (([], "it is empty"), ([none], "max_length is 100 m"), (shortest, "a list.* got Route")):
+        with pytest.raises(ValueError, match=f"routes must .*{message}"):
+            plot.front(routes)
+    axes = plot.front([shortest], *[shortest] * 7).axes[0]
+    assert len(axes.lines) == 8
+
+
+def test_colors_span_a_factor_of_ten_at_least():
+    """So that nearly equal risks look so, and the ticks of the bar can be read."""
+    even = RiskMap(City(np.zeros((4, 4, 4), dtype=bool), 5.0), 0.03, 0.5)
+    for risk_map in (even, replace(even, population_density=0.0)):
+        norm = plot.risk_norm(risk_map)
+        assert norm.vmax == pytest.approx(10 * norm.vmin)
+    assert plot.risk_norm(even).vmax == even.rate[even.flyable].max()
+    campus = reference_campus()
+    rates = campus.rate[campus.flyable]
+    assert (plot.risk_norm(campus).vmin, plot.risk_norm(campus).vmax) == (rates.min(), rates.max())
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (lambda campus, route: plot.risk(campus.city, 27.5), "risk_map must be a RiskMap, got City"),
+        (lambda campus, route: plot.layers(campus.city), "risk_map must be a RiskMap, got City"),
+        (lambda campus, route: plot.risk(campus, route), "height must be a number"),
+        (
+            lambda campus, route: plot.risk(campus, 27.5, [route]),
+            r"routes must be a Route, got list: .* as in \*routes",
+        ),
+        (lambda campus, route: plot.plan(campus, route), "city must be a City, got RiskMap: .* as its .city"),
+        (lambda campus, route: plot.section(campus, 27.5), "city must be a City, got RiskMap"),
+        (lambda campus, route: plot.profile(campus, route), "city must be a City, got RiskMap"),
+        (lambda campus, route: plot.still(campus, route), "city must be a City, got RiskMap"),
+        (lambda campus, route: plot.still(campus.city, risk=campus.rate), "risk must be a RiskMap, got ndarray"),
+        (lambda campus, route: scene.page(campus, route), "city must be a City, got RiskMap"),
+        (lambda campus, route: scene.show(campus.city, [route]), "routes must be a Route, got list"),
+        (lambda campus, route: scene.page(campus.city, risk=campus.city), "risk must be a RiskMap, got City"),
+    ],
+)
+def test_city_and_risk_map_are_not_taken_for_one_another(draw, message, route):
+    with pytest.raises(ValueError, match=message):
+        draw(reference_campus(), route)
 
 
 def test_still_paints_the_ground_with_the_risk():

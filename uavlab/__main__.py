@@ -155,8 +155,8 @@ def by_risk(
     """The route of least risk within a detour, and beside it the safest of the shortest."""
     from uavlab.planners import least_risk
 
-    if not detour_percent >= 0:
-        raise ValueError(f"--detour must be a percentage of at least 0, got {detour_percent:g}")
+    if not 0 <= detour_percent < np.inf:
+        raise ValueError(f"--detour must be a percentage, finite and at least 0, got {detour_percent:g}")
     blind = least_risk(risk_map, start, goal, length=1.0, min_clearance=clearance)  # a metre outweighs all risk
     blind = replace(blind, planner="shortest")
     if not blind.reached:

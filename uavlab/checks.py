@@ -61,6 +61,20 @@ def vectors(**named: npt.ArrayLike) -> list[np.ndarray]:
     return list(arrays.values())
 
 
+MAKERS = {
+    "City": "read_city(path) reads one, a RiskMap has one as its .city",
+    "RiskMap": "RiskMap(city, population_density, shelter) makes one",
+    "Route": "planners give one, Route(points) makes one; several are given one by one, as in *routes",
+    "UAV": "uavlab.vehicle has some",
+}
+
+
+def instance(name: str, value: object, kind: type) -> None:
+    """Refuse a thing of another kind, such as a RiskMap where a City is asked for."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} must be a {kind.__name__}, got {type(value).__name__}: {MAKERS[kind.__name__]}")
+
+
 def air(temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_hpa: npt.ArrayLike) -> None:
     within("temperature_c", temperature_c, -60.0, 60.0, "°C (kelvin? subtract 273.15)")
     within("humidity_percent", humidity_percent, 0.0, 100.0, "%")

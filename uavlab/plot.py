@@ -6,6 +6,7 @@ apart.
 """
 
 from collections.abc import Sequence
+from itertools import cycle
 from typing import Any
 
 import matplotlib
@@ -18,6 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
+from uavlab import checks
 from uavlab.city import City
 from uavlab.risk import RiskMap
 from uavlab.route import Route
@@ -48,6 +50,7 @@ def plan(city: City, *routes: Route) -> Figure:
     routes : Route
         Those without points are named in the legend.
     """
+    check_drawn(city, routes)
     figure, axes = new_figure(6.4, 5.4)
     tops = np.where(city.occupied, (np.arange(city.shape[2]) + 1) * city.cell, 0).max(axis=2)
     image = draw_map(axes, city, np.where(tops > 0, tops, np.nan), "Greys", vmin=0.0, vmax=1.3 * max(tops.max(), 1.0))
@@ -89,6 +92,7 @@ def section(
     ValueError
         If the height lies outside of the map.
     """
+    check_drawn(city, routes)
     k = level_of(city, height)
     figure, axes = new_figure(6.4, 5.4)
     layer = (city.clearance if values is None else np.asarray(values))[:, :, k]
@@ -118,6 +122,7 @@ def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
     ValueError
         If the height lies outside of the map.
     """
+    checks.instance("risk_map", risk_map, RiskMap)
     city = risk_map.city
     k = level_of(city, height)
     figure = section(city, height, risk_map.rate, *routes, label=RISK_LABEL, norm=risk_norm(risk_map))
@@ -132,6 +137,7 @@ def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
 
 def layers(risk_map: RiskMap) -> Figure:
     """What a risk map was made from: people, shelter and cars, on three plans."""
+    checks.instance("risk_map", risk_map, RiskMap)
     figure, panels = plt.subplots(1, 3, figsize=(11.4, 4.0), dpi=DPI, layout="constrained", sharey=True)
     shown = (
         (1e3 * risk_map.population_density, "thousands of people per km²"),
@@ -157,11 +163,24 @@ def front(routes: Sequence[Route], *marked: Route, label: str = "risk ∫ r ds/d
         Others to compare, each with its cost in the same unit.
     label : str
         Of the vertical axis, with a unit.
+
+    Raises
+    ------
+    ValueError
+        If none of the routes arrives.
     """
+    if not isinstance(routes, Sequence):
+        raise ValueError(f"routes must be a list, as from pareto_front, got {type(routes).__name__}")
+    for route in (*routes, *marked):
+        checks.instance("routes", route, Route)
+    if not any(route.reached for route in routes):
+        why = f": {routes[0].reason}" if routes else ", it is empty"
+        raise ValueError(f"routes must hold one that arrives{why}")
     figure, axes = new_figure(6.4, 4.2)
     axes.plot([r.length for r in routes], [r.cost for r in routes], "o-", color=ROUTE_COLORS[1], label="Pareto front",
               drawstyle="steps-post", linewidth=1)  # fmt: skip
-    for route, color, marker in zip(marked, ("#D55E00", "#000000", "#CC79A7", "#009E73"), "^sDv", strict=False):
+    styles = cycle(zip(("#D55E00", "#000000", "#CC79A7", "#009E73", "#E69F00"), "^sDvP", strict=True))
+    for route, (color, marker) in zip(marked, styles, strict=False):
         axes.plot(route.length, route.cost, marker, color=color, markersize=9, label=label_of(route))
     axes.set(xlabel="length [m]", ylabel=label, yscale="log")
     axes.grid(alpha=0.3, which="both")
@@ -171,6 +190,7 @@ def front(routes: Sequence[Route], *marked: Route, label: str = "risk ∫ r ds/d
 
 def profile(city: City, *routes: Route, safe_distance: float | None = None) -> Figure:
     """Height and clearance along routes, with the distance to keep as a dashed line if it is given [m]."""
+    check_drawn(city, routes)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7.2, 4.6), dpi=DPI, layout="constrained")
     for route, color in zip(routes, route_colors(len(routes)), strict=True):
         if len(route.points) < 2:
@@ -260,6 +280,7 @@ def still(
     elevation_deg, azimuth_deg : float
         From where it is seen [degrees]: height above the horizon, direction counted from east.
     """
+    check_drawn(city, routes, risk)
     figure = plt.figure(figsize=(7.2, 5.4), dpi=DPI)
     axes: Any = figure.add_axes((0, 0.04, 1, 0.9), projection="3d", computed_zorder=False)
     low, high = city.bounds
@@ -302,10 +323,13 @@ def still(
 
 
 def risk_norm(risk_map: RiskMap) -> LogNorm:
-    """From risk to colours by factors: from the least to the greatest above 0 where the UAV may fly."""
+    """From risk to colours by factors: from the least above 0 to the greatest where the UAV may fly, or farther down.
+
+    It spans a factor of ten at least, so that nearly equal risks look so, and the bar can be read.
+    """
     rates = risk_map.rate[risk_map.flyable & (risk_map.rate > 0)]
     least, most = (rates.min(), rates.max()) if len(rates) else (1e-9, 1e-9)
-    return LogNorm(least, max(most, 1.01 * least), clip=True)
+    return LogNorm(min(least, most / 10), most, clip=True)
 
 
 def ground_risk(risk_map: RiskMap) -> np.ndarray:
@@ -386,11 +410,21 @@ def ribbons(points: np.ndarray, width: float) -> np.ndarray:
 
 def level_of(city: City, height: float) -> int:
     """Index of the layer of voxels at a height [m]; `ValueError` if it lies outside of the map."""
+    checks.number("height", height)
     k = int(city.cell_of((city.origin[0], city.origin[1], height))[2])
     if not 0 <= k < city.shape[2]:
         low, high = city.bounds[:, 2]
         raise ValueError(f"height must lie on the map, {low:g} to {high:g} m, got {height!r}")
     return k
+
+
+def check_drawn(city: City, routes: Sequence[Route], risk_map: RiskMap | None = None) -> None:
+    """Refuse what can't be drawn: a risk map in the place of the city, a list of routes in that of a route."""
+    checks.instance("city", city, City)
+    for route in routes:
+        checks.instance("routes", route, Route)
+    if risk_map is not None:
+        checks.instance("risk", risk_map, RiskMap)
 
 
 def new_figure(width: float, height: float) -> tuple[Figure, Axes]:

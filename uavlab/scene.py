@@ -109,6 +109,7 @@ def page(
         If `expansion` is asked for without a route that recorded its order, `safe_distance` is not above 0,
         `slice_height` lies outside of the map, or there is no `risk` to slice.
     """
+    plot.check_drawn(city, routes, risk)
     if slice_height is not None and risk is None:
         raise ValueError("slice_height needs risk=..., the map to cut")
     if safe_distance is not None and not safe_distance > 0:

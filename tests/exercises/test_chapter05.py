@@ -83,9 +83,21 @@ def in_the_open(value):
     return lambda energy, shelter: chance(energy, shelter) if shelter > 0 else value(energy)
 
 
-def cost(rate, voxels, cell, speed, begin=0.5, straight=False):
+def speed_in_time(height, mass, drag_area, air_density):
+    """Right at a time, but the time is that of a fall without air."""
+    terminal = terminal_speed(height, mass, drag_area, air_density)
+    return terminal * math.tanh(9.81 * math.sqrt(2 * height / 9.81) / terminal)
+
+
+def mean_rate_times_time(rate, voxels, cell, speed):
+    length = cell * np.linalg.norm(np.diff(voxels, axis=0), axis=1).sum()
+    return rate[tuple(voxels.T)].mean() * length / (3600 * speed)
+
+
+def cost(rate, voxels, cell, speed, begin=0.5, straight=False, diagonals=1.0):
     """Deaths, with this share of each leg at the rate where it begins."""
     lengths = np.linalg.norm(np.diff(voxels, axis=0), axis=1)
+    lengths[lengths > 1] *= diagonals
     along = rate[tuple(voxels.T)]
     legs = begin * along[:-1] + (1 - begin) * along[1:]
     return float(legs @ (np.ones_like(lengths) if straight else lengths)) * cell / (3600 * speed)
@@ -97,6 +109,7 @@ MISTAKES = [
     ("05.1", lambda *f: fall(*f, factor=2.0), "more energy than gravity"),
     ("05.1", lambda *f: math.sqrt(2 * 9.81 * f[0]), "without air"),
     ("05.1", terminal_speed, "the terminal speed"),
+    ("05.1", speed_in_time, "the same time"),
     ("05.1", lambda *f: fall(*f) ** 2, "the square of the speed"),
     ("05.1", lambda *f: fall(*f[:3], 1.0), "where is the density"),
     ("05.1", lambda *f: math.nan, "no finite number"),
@@ -110,6 +123,8 @@ MISTAKES = [
     ("05.2", lambda e, s: chance(e, 1.0), "the same behind every shelter"),
     ("05.2", lambda e, s: 0.5, "you say"),
     ("05.2", chance, "divides by zero"),
+    ("05.2", lambda e, s: chance(e, max(s, 1e-6)), "the power grows without bound"),
+    ("05.2", in_the_open(lambda energy: None), "In the open your function returns nothing"),
     ("05.2", in_the_open(lambda energy: 1.0), "let every blow kill"),
     ("05.2", in_the_open(lambda energy: float(energy < 34)), "wrong way round"),
     ("05.2", in_the_open(lambda energy: 0.0), "0 for 35 J"),
@@ -118,6 +133,8 @@ MISTAKES = [
     ("05.3", lambda *m: cost(*m, straight=True), "equally long"),
     ("05.3", lambda *m: cost(*m, begin=0.0), "that a move leads to"),
     ("05.3", lambda *m: cost(*m, begin=1.0), "where a move begins"),
+    ("05.3", mean_rate_times_time, "the mean rate"),
+    ("05.3", lambda *m: cost(*m, diagonals=2.0), "How long is a move over an edge"),
     ("05.3", lambda *m: 2 * cost(*m), "Twice too much"),
     ("05.3", lambda *m: 3600 * cost(*m), "the rate is per hour"),
     ("05.3", lambda *m: 60 * cost(*m), "more than 60 seconds"),

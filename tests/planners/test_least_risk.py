@@ -570,6 +570,8 @@ def refuses(ask, message, *arguments, **options):
         ({"max_pitch": np.nan}, "max_pitch must be from 0 to .* got nan"),
         ({"min_clearance": -1.0}, "min_clearance must be a distance in metres, at least 0, got -1.0"),
         ({"min_clearance": np.nan}, "min_clearance must be .* got nan"),
+        ({"min_clearance": None}, "min_clearance must be finite, got nan"),
+        ({"min_clearance": "3 m"}, "min_clearance must be a number .* got text, '3 m'"),
     ],
 )
 def test_limits_out_of_range_are_refused(ask, options, message):
@@ -582,12 +584,20 @@ def test_limits_out_of_range_are_refused(ask, options, message):
     [
         (((np.nan, 1, 1), ENDS[1]), "start must be finite"),
         ((ENDS[0], (1, 1)), "goal must be three numbers"),
+        (("here", ENDS[1]), "start must be a number or an array of numbers: got text, 'here'"),
         ((ENDS[0], (99, 1, 1)), "goal .* lies outside of the map: x 0 to 16, y 0 to 16, z 0 to 8 m"),
         ((ENDS[0], (0.5, 0.5, 0.5)), "lie in the same voxel"),
     ],
 )
 def test_ends_that_make_no_question_are_refused(ask, ends, message):
     refuses(ask, message, OPEN, *ends)
+
+
+@pytest.mark.parametrize("ask", BOTH)
+def test_a_city_is_no_risk_map(ask):
+    refuses(
+        ask, r"risk_map must be a RiskMap, got City: RiskMap\(city, population_density, shelter\)", OPEN.city, *ENDS
+    )
 
 
 @pytest.mark.parametrize("ask", BOTH)

@@ -1,5 +1,7 @@
 """Layers: orientation of rasters, area of roads, classes of shelter, and each way of asking wrongly."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -95,8 +97,30 @@ def test_raster_that_doesnt_cover_the_city_is_refused_unless_there_is_a_fill():
     layer = raster_layer(CITY, raster, small, fill=0.001)
     assert layer[:2] == pytest.approx(0.03)
     assert layer[2:] == pytest.approx(0.001)
-    with pytest.raises(ValueError, match="12 of the city's 12 columns"):
-        raster_layer(CITY, raster, (-1000, -1000, -900, -900))
+
+
+def test_degrees_taken_for_metres_are_refused_and_metres_for_degrees():
+    """With a fill, too: nothing would be left of the raster, and of a road not a square metre."""
+    raster, road = np.full((2, 2), 0.03), [(108.9, 34.2), (108.91, 34.21)]
+    for fill in (None, 0.0):
+        with pytest.raises(
+            ValueError, match=r"bounds must lie around the city, .* m \(in degrees\? say geographic=True"
+        ):
+            raster_layer(CITY, raster, (-179, -80, -178, -79), fill=fill)
+    with pytest.raises(ValueError, match=r"lines\[0\] lies within 0.1 m; in degrees it needs geographic=True"):
+        road_layer(CITY, [road], 6.0)
+    on_earth = replace(CITY, reference=(108.9, 34.2))
+    with pytest.raises(ValueError, match=r"bounds: latitudes must be from -90 to 90 degrees .* got 150"):
+        raster_layer(on_earth, raster, (0, 0, 150, 150), geographic=True)
+    with pytest.raises(ValueError, match=r"latitudes must be from -90 to 90 degrees .* got 108.9"):
+        road_layer(on_earth, [np.fliplr(road)], 6.0, geographic=True)
+    with pytest.raises(ValueError, match=r"bounds must lie around the city, .* degrees, got"):
+        raster_layer(on_earth, raster, (8, 50, 9, 51), geographic=True)
+
+
+def test_names_of_shelter_may_come_as_objects():
+    names = np.full(CITY.shape[:2], "sparse trees")
+    assert (shelter_layer(CITY, names.astype(object)) == shelter_layer(CITY, names)).all()
 
 
 def test_nan_in_a_raster_is_no_data():
@@ -294,6 +318,7 @@ LINE = [(0, 0), (10, 10)]
         (lambda: road_layer(CITY, [LINE, [(0, 0)]], 5), r"lines\[1\] must be .* got shape \(1, 2\)"),
         (lambda: road_layer(CITY, [[(0, 0, 0), (1, 1, 1)]], 5), r"lines\[0\] must be .* got shape \(2, 3\)"),
         (lambda: road_layer(CITY, [[(0, 0), (1, np.nan)]], 5), r"lines\[0\] must be at least two finite points"),
+        (lambda: road_layer(CITY, None, 5), r"lines must be a list of lines \(M, 2\), got NoneType"),
         (lambda: road_layer(CITY, ["road"], 5), r"lines\[0\] must be a number or an array of numbers"),
         (lambda: road_layer(CITY, [LINE], 0), "width must be finite and above 0, got 0"),
         (lambda: road_layer(CITY, [LINE], [5, np.nan]), r"width must be one number or one for each of the 1 lines"),
@@ -309,6 +334,11 @@ LINE = [(0, 0), (10, 10)]
         (lambda: shelter_layer(CITY, np.nan), "ground must be from 0 to 1 .* got nan"),
         (lambda: shelter_layer(CITY, np.zeros((3, 4))), r"ground must have the city's ground plan \(4, 3\), got \(3"),
         (lambda: shelter_layer(CITY, high=-1), "high must be finite and at least 0, got -1"),
+        (lambda: shelter_layer(CITY, high=[5, 10]), "high must be one number, got an array"),
+        *(
+            (lambda layer=layer: layer(RiskMap(CITY, 0.0, 0.0)), "city must be a City, got RiskMap: .* as its .city")
+            for layer in (shelter_layer, lambda it: raster_layer(it, [[1]], BOUNDS), lambda it: road_layer(it, [], 5))
+        ),
     ],
 )
 def test_wrong_questions_are_refused_by_name(call, message):

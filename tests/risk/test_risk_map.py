@@ -11,8 +11,11 @@ from uavlab.city import Building, City
 from uavlab.risk import (
     POPULATION_DENSITY,
     RiskMap,
+    ballistic_fall,
     building_threat,
+    fall_speed,
     person_rate,
+    printed_threat,
     reference_campus,
     vehicle_rate,
 )
@@ -278,6 +281,7 @@ def test_layers_can_be_exchanged():
 
 LAYER = np.zeros((6, 5))
 OUTSIDE = Route([(5, 5, 5), (5, 5, 45)])
+NOWHERE = Route(np.empty((0, 3)), reached=False, reason="walled in")
 
 
 @pytest.mark.parametrize(
@@ -315,6 +319,24 @@ OUTSIDE = Route([(5, 5, 5), (5, 5, 45)])
         (lambda: LAYERED.fatalities(Route([(5, 5, 5)]), np.nan), "speed must be finite and above 0, got nan"),
         (lambda: LAYERED.fatalities(Route([(5, 5, 5)]), "16"), "speed must be a number .* got text, '16'"),
         (lambda: LAYERED.fatalities(Route([(5, 5, 5)]), [8, 16]), "speed must be one number"),
+        (lambda: RiskMap(LAYERED, 0.03, 0.5), "city must be a City, got RiskMap: .* a RiskMap has one as its .city"),
+        (lambda: RiskMap("town.geojson", 0.03, 0.5), r"city must be a City, got str: read_city\(path\) reads one"),
+        (lambda: RiskMap(FLAT, 0.03, 0.5, uav=1.38), "uav must be a UAV, got float: uavlab.vehicle has some"),
+        (lambda: fall_speed(30.0, 1.38), "uav must be a UAV, got float"),
+        (lambda: ballistic_fall(30.0, None), "uav must be a UAV, got NoneType"),
+        (lambda: person_rate(30.0, uav="quadrotor"), "uav must be a UAV, got str"),
+        (lambda: building_threat(LAYERED), "city must be a City, got RiskMap"),
+        (lambda: printed_threat(FLAT, OUTSIDE), "route must be a Route, got City"),
+        (
+            lambda: LAYERED.integral(np.zeros((2, 3))),
+            r"route must be a Route, got ndarray: .* Route\(points\) makes one",
+        ),
+        (lambda: LAYERED.cell_sum([OUTSIDE]), "route must be a Route, got list"),
+        (lambda: LAYERED.fatalities(None), "route must be a Route, got NoneType"),
+        (lambda: LAYERED.integral(NOWHERE), "route must be one that was found .*, got none: walled in"),
+        (lambda: LAYERED.integral(NOWHERE, drift=True), "route must be one that was found"),
+        (lambda: LAYERED.cell_sum(NOWHERE), "route must be one that was found"),
+        (lambda: LAYERED.fatalities(NOWHERE), "route must be one that was found"),
         (lambda: RiskMap(City(TOWN.occupied), 0.03, 0.5).threat, "city must know its buildings, not only voxels"),
     ],
 )

@@ -59,6 +59,12 @@ def speed_without_density(height: float, mass: float, drag_area: float, air_dens
     return speed_after(height, mass, drag_area, 1.0)
 
 
+def speed_in_time(height: float, mass: float, drag_area: float, air_density: float) -> float:
+    """V∞ tanh(g t / V∞), right at a time, with the time of a fall without air."""
+    terminal = math.sqrt(2 * mass * GRAVITY / (drag_area * air_density))
+    return terminal * math.tanh(math.sqrt(2 * GRAVITY * height) / terminal)
+
+
 FALL_MISTAKES: list[tuple[Callable[[float, float, float, float], float], str]] = [
     (
         lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, factor=1.0),
@@ -80,6 +86,10 @@ FALL_MISTAKES: list[tuple[Callable[[float, float, float, float], float], str]] =
     (
         lambda height, mass, drag_area, air_density: math.sqrt(2 * mass * GRAVITY / (drag_area * air_density)),
         "That is the terminal speed, which a very long fall leads to. How near to it is the wreck after `height`?",
+    ),
+    (
+        lambda height, mass, drag_area, air_density: speed_in_time(height, mass, drag_area, air_density),
+        "That is the speed after the time that a fall without air takes. Does the wreck need the same time for it?",
     ),
     (
         lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, power=1.0),
@@ -106,12 +116,16 @@ def exercise_2(answer: Callable[[float, float], float]) -> str:
             "kill one in two there, and at 34 J the shelter must make no difference."
         )
     try:
-        limits = [float(answer(*blow)) for blow in IN_THE_OPEN]
+        limits = [answer(*blow) for blow in IN_THE_OPEN]
     except ZeroDivisionError:
         return (
             "With shelter it is right. In the open it divides by zero: what does the power go to when the shelter goes "
             "to 0, for energies below β and above it?"
         )
+    except OverflowError:
+        return "With shelter it is right. In the open the power grows without bound: what does the chance go to then?"
+    if any(chance is None for chance in limits):
+        return "With shelter it is right. In the open your function returns nothing."
     if agree(limits, [0, 0, 1, 1, 1]):
         return ""
     if agree(limits, [1, 1, 1, 1, 1]):
@@ -167,7 +181,7 @@ def exercise_3(answer: Callable[[np.ndarray, np.ndarray, float, float], float]) 
         return NOTHING
     if any(np.shape(cost) != () for cost in given):
         return "The answer must be one number: the parts of the route still have to be added up."
-    if agree(given, [expected_deaths(*mission) for mission in missions]):
+    if agree(given, [expected_deaths(*mission) for mission in missions], tolerance=1e-6):
         return ""
     for mistake, hint in ROUTE_MISTAKES:
         if agree(given, [mistake(*mission) for mission in missions]):
@@ -175,6 +189,11 @@ def exercise_3(answer: Callable[[np.ndarray, np.ndarray, float, float], float]) 
     level = np.full((3, 1, 1), 3.6)
     straight = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0)])
     cost = float(answer(level, straight, 5.0, 10.0))
+    if math.isclose(cost, 0.001, rel_tol=1e-6):
+        return (
+            "Where the rate is the same everywhere, two straight moves are right. How long is a move over an edge, or "
+            "through a corner? And with which rates is each move flown?"
+        )
     return (
         "Take a map with 3.6 deaths per hour everywhere, and two moves of 5 m at 10 m/s: one second. That makes 0.001, "
         f"and you get {cost:.4g}."
@@ -232,6 +251,12 @@ ROUTE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray, float, float], floa
     (
         lambda rate, voxels, cell, speed: route_integral(rate, voxels, 1.0) * cell / (3600 * speed),
         "You take the rate of the voxel where a move begins, for the whole move. In which voxels does it run?",
+    ),
+    (
+        lambda rate, voxels, cell, speed: (
+            float(rate[tuple(voxels.T)].mean()) * expected_deaths(np.ones(rate.shape), voxels, cell, speed)
+        ),
+        "You multiply the mean rate by the whole time. Is the UAV in each voxel equally long?",
     ),
     (
         lambda rate, voxels, cell, speed: 2 * expected_deaths(rate, voxels, cell, speed),

@@ -27,8 +27,9 @@ def terminal_speed(uav: UAV = RISK_QUADROTOR, *, air_density: float = AIR_DENSIT
     Raises
     ------
     ValueError
-        If the density is not above 0.
+        If the density is not above 0, or `uav` is no `UAV`.
     """
+    checks.instance("uav", uav, UAV)
     checks.positive("air_density", air_density)
     return float(np.sqrt(2 * uav.weight / (uav.drag_area * air_density)))
 
@@ -127,6 +128,7 @@ def ballistic_fall(
 
 def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_density: float) -> Any:
     """SciPy's solution of the fall until `depth` metres are lost: `sol(t)` is (distance, drop, and their rates)."""
+    checks.instance("uav", uav, UAV)
     speed = uav.cruise_speed if speed is None else speed
     checks.number("speed", speed)
     checks.not_negative("speed", speed)

@@ -18,6 +18,9 @@ from uavlab.risk.rates import CARS_PER_KM, LANE_WIDTH, SHELTER, vehicle_share
 HIGH_BUILDING = 10.0
 """From this height on [m] a building counts as high; the papers draw no line."""
 
+SHORTEST_ROAD = 0.1
+"""A road that is shorter [m] is one in degrees: 0.1° are 10 km."""
+
 
 def raster_layer(
     city: City,
@@ -49,9 +52,10 @@ def raster_layer(
     Raises
     ------
     ValueError
-        If `values` isn't two-dimensional, bounds are not in order, the city has no reference for degrees, or the raster
-        doesn't cover the city and there is no `fill`.
+        If `values` isn't two-dimensional, bounds are not in order or lie elsewhere, the city has no reference for
+        degrees, or the raster doesn't cover the city and there is no `fill`.
     """
+    checks.instance("city", city, City)
     raster = checks.numbers("values", values)
     if raster.ndim != 2 or raster.size == 0:
         raise ValueError(f"values must have shape (rows, columns), got {raster.shape}")
@@ -63,11 +67,16 @@ def raster_layer(
         checks.finite("fill", fill)
     points = column_centers(city)
     if geographic:
+        check_degrees("bounds", edges.reshape(2, 2))
         points = longitude_latitude(points, checked_reference(city))
     west, south, east, north = edges
     column = np.floor((points[..., 0] - west) / (east - west) * raster.shape[1]).astype(int)
     row = np.floor((north - points[..., 1]) / (north - south) * raster.shape[0]).astype(int)
     inside = (column >= 0) & (column < raster.shape[1]) & (row >= 0) & (row < raster.shape[0])
+    if not inside.any():
+        ranges = ", ".join(f"{points[..., a].min():g} to {points[..., a].max():g}" for a in range(2))
+        unit = "degrees" if geographic else "m (in degrees? say geographic=True)"
+        raise ValueError(f"bounds must lie around the city, whose columns are at {ranges} {unit}, got {bounds!r}")
     layer = np.full(city.shape[:2], np.nan)
     layer[inside] = raster[row[inside], column[inside]]
     missing = np.isnan(layer)
@@ -115,9 +124,12 @@ def road_layer(
     Raises
     ------
     ValueError
-        If a line hasn't shape (M, 2) with M of at least 2, a number is out of its range, or the city has no reference
-        for degrees.
+        If a line hasn't shape (M, 2) with M of at least 2 or is a mere point, a number is out of its range, or the
+        city has no reference for degrees.
     """
+    checks.instance("city", city, City)
+    if not isinstance(lines, Sequence | np.ndarray):
+        raise ValueError(f"lines must be a list of lines (M, 2), got {type(lines).__name__}")
     widths, densities = (
         per_line(name, value, len(lines)) for name, value in (("width", width), ("cars_per_km", cars_per_km))
     )
@@ -131,7 +143,10 @@ def road_layer(
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
             raise ValueError(f"lines[{number}] must be at least two finite points (M, 2), got shape {line.shape}")
         if geographic:
+            check_degrees(f"lines[{number}]", line)
             line = east_north(line, checked_reference(city))
+        elif np.ptp(line, axis=0).max() < SHORTEST_ROAD:
+            raise ValueError(f"lines[{number}] lies within {SHORTEST_ROAD:g} m; in degrees it needs geographic=True")
         roadway = shapely.LineString(line).buffer(widths[number] / 2, cap_style="flat", join_style="mitre")
         near = np.flatnonzero(shapely.intersects(left, roadway))
         layer[near] += covered[number] * shapely.area(shapely.intersection(left[near], roadway)) / city.cell**2
@@ -160,8 +175,12 @@ def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = H
     ValueError
         If a name is none of Table 1's, a number not in [0, 1], or the shape not the city's ground plan.
     """
+    checks.instance("city", city, City)
+    checks.number("high", high)
     checks.not_negative("high", high)
     open_ground = np.asarray(ground)
+    if open_ground.dtype.kind == "O":  # names from pandas
+        open_ground = np.asarray(open_ground.tolist())
     if open_ground.dtype.kind == "U":
         unknown = sorted(set(open_ground.ravel().tolist()) - set(SHELTER))
         if unknown:
@@ -181,6 +200,12 @@ def column_centers(city: City) -> np.ndarray:
     """Centres (nx, ny, 2) of the columns of voxels, x and y [m]."""
     x, y = (city.origin[a] + city.cell * (np.arange(city.shape[a]) + 0.5) for a in range(2))
     return np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+
+
+def check_degrees(name: str, points: np.ndarray) -> None:
+    """Refuse what can't be longitudes and latitudes (..., 2)."""
+    for axis, kind, most in ((0, "longitudes", 180.0), (1, "latitudes", 90.0)):
+        checks.within(f"{name}: {kind}", points[..., axis], -most, most, "degrees (metres? leave geographic out)")
 
 
 def checked_reference(city: City) -> tuple[float, float]:

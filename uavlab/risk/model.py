@@ -58,6 +58,8 @@ class RiskMap:
     as_printed: bool = False
 
     def __post_init__(self) -> None:
+        checks.instance("city", self.city, City)
+        checks.instance("uav", self.uav, UAV)
         for name in ("population_density", "shelter", "vehicle_share"):
             object.__setattr__(self, name, checked_layer(self.city, name, getattr(self, name)))
         check_density(self.population_density)
@@ -125,8 +127,9 @@ class RiskMap:
         Raises
         ------
         ValueError
-            If the route leaves the map.
+            If the route leaves the map, or there is none.
         """
+        check_route(route)
         below = route.integral(self.city, self.rate) / self.city.cell
         if not drift:
             return below
@@ -144,8 +147,9 @@ class RiskMap:
         Raises
         ------
         ValueError
-            If the route leaves the map.
+            If the route leaves the map, or there is none.
         """
+        check_route(route)
         city = self.city
         route.integral(city, self.rate)  # refuses a route that leaves the map
         index, length = city.voxels_along(route.points)
@@ -164,12 +168,20 @@ class RiskMap:
         Raises
         ------
         ValueError
-            If the speed is not above 0, or the route leaves the map.
+            If the speed is not above 0, the route leaves the map, or there is none.
         """
         speed = self.uav.cruise_speed if speed is None else speed
         checks.number("speed", speed)
         checks.positive("speed", speed)
+        check_route(route)
         return route.integral(self.city, self.rate) / (3600 * speed)
+
+
+def check_route(route: Route) -> None:
+    """Refuse a route that was not found: it would cost nothing, less than any other."""
+    checks.instance("route", route, Route)
+    if not (route.reached or len(route.points)):
+        raise ValueError(f"route must be one that was found (route.reached), got none: {route.reason}")
 
 
 def checked_layer(city: City, name: str, values: npt.ArrayLike) -> np.ndarray:

@@ -128,6 +128,7 @@ def person_rate(
     if ballistic and as_printed:
         raise ValueError("as_printed and ballistic exclude each other: the papers print the closed form only")
     check_density(population_density)
+    checks.instance("uav", uav, UAV)
     speed = uav.cruise_speed if speed is None else speed
     checks.number("speed", speed)
     checks.not_negative("speed", speed)

@@ -41,6 +41,7 @@ def building_threat(city: City, *, constant: float = THREAT_CONSTANT) -> np.ndar
     ValueError
         If the city knows no buildings though voxels are occupied, or `constant` is negative.
     """
+    checks.instance("city", city, City)
     checks.not_negative("constant", constant)
     if not city.buildings and city.occupied.any():
         raise ValueError("city must know its buildings, not only voxels: use read_geojson or City.from_buildings")
@@ -63,6 +64,8 @@ def printed_threat(route: Route, city: City, *, constant: float = THREAT_CONSTAN
     ValueError
         If the city knows no buildings, the route has no points, or `constant` is negative.
     """
+    checks.instance("route", route, Route)
+    checks.instance("city", city, City)
     checks.not_negative("constant", constant)
     if not city.buildings or len(route.points) == 0:
         raise ValueError("the printed threat needs a route with points and a city that knows its buildings")
