@@ -836,10 +836,7 @@ with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "town.geojson"
     path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
     town = read_geojson(path, cell=5.0, margin=30.0)
-print(
-    f"{len(town.buildings)} buildings, {' × '.join(map(str, town.shape))} voxels, (0, 0) at",
-    np.round(town.reference, 6),
-)
+print(f"{len(town.buildings)} buildings, {' × '.join(map(str, town.shape))} voxels at {np.round(town.reference, 6)}")
 
 # %%
 people = np.array([[60, 20, 15, 70], [80, 5, 10, 120], [150, 130, 140, 90.0]])  # per pixel, first row in the north
