@@ -91,8 +91,12 @@ def safe_distance(load: str, disturbance: str, *, reading: str = "table", uav: U
         return 2.0 + 0.5 * list(LOADS).index(load) + list(DISTURBANCES).index(disturbance)
     if reading != "physical":
         raise ValueError(f"reading must be 'table' or 'physical', got {reading!r}")
-    offset = np.ceil(gust_offset(uav.loaded(LOADS[load]), DISTURBANCES[disturbance]) - 1e-9)
-    return float(minimum_safe_distance(offset, uav.diameter))
+    return physical_distance(uav.loaded(LOADS[load]), DISTURBANCES[disturbance])
+
+
+def physical_distance(uav: UAV, wind: float) -> float:
+    """D_min [m] of a UAV with its payload in a mean wind [m/s], its offset rounded up to whole metres."""
+    return float(minimum_safe_distance(np.ceil(gust_offset(uav, wind) - 1e-9), uav.diameter))
 
 
 def gust_offset(uav: UAV, wind: float) -> float:
@@ -143,7 +147,7 @@ def disturbance_class(wind: float) -> str:
 
 
 def checked_class(name: str, value: str, known: dict[str, float]) -> str:
-    if value not in known:
+    if not isinstance(value, str) or value not in known:
         raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
     return value
 
@@ -173,9 +177,12 @@ class ConditionCheck:
     step : float
         By how much the boundary moves [m], above 0.
     hold : float
-        How long it must be calm before it comes down [s], above 0.
+        How long it must be calm before it comes down [s], above 0. Offsets of a position control with ω_n = 1 rad/s
+        forget in 2 s, so 10 s hold five of them, too few to tell a pause between gusts from their end.
     release : float
         Share of the lower boundary that counts as calm, between 0 and 1.
+    steps : int
+        By how many it is raised now.
     boundary : float
         ξ that holds now [m].
     log : list of Change
@@ -189,18 +196,23 @@ class ConditionCheck:
 
     predicted: float
     step: float = 0.5
-    hold: float = 10.0
+    hold: float = 20.0
     release: float = 0.8
-    boundary: float = field(init=False)
+    steps: int = field(init=False, default=0)
     log: list[Change] = field(init=False, default_factory=list)
     calm_since: float = field(init=False, default=-np.inf)
+    now: float = field(init=False, default=-np.inf)
 
     def __post_init__(self) -> None:
         for name in ("predicted", "step", "hold"):
             checks.number(name, getattr(self, name))
             checks.positive(name, getattr(self, name))
+        checks.number("release", self.release)
         checks.share("release", self.release)
-        self.boundary = float(self.predicted)
+
+    @property
+    def boundary(self) -> float:
+        return float(self.predicted + self.steps * self.step)
 
     def observe(self, time: float, offset: float) -> float:
         """Take an offset [m] observed at a time [s], and return the boundary that holds from now on [m].
@@ -208,24 +220,28 @@ class ConditionCheck:
         Raises
         ------
         ValueError
-            If the offset is negative or not finite.
+            If the offset is negative or not finite, or the time before the last one.
         """
         checks.number("offset", offset)
         checks.not_negative("offset", offset)
-        lower = max(self.boundary - self.step, self.predicted)
-        if offset >= self.release * lower or self.calm_since == -np.inf:
+        checks.number("time", time)
+        checks.finite("time", time)
+        if time < self.now:
+            raise ValueError(f"time must not go back, got {time:g} s after {self.now:g} s")
+        self.now = time
+        needed = int(np.ceil((offset - self.predicted) / self.step - 1e-9))
+        if offset >= self.release * (self.boundary - self.step):
             self.calm_since = time
-        if offset > self.boundary:
-            raised = self.predicted + self.step * np.ceil((offset - self.predicted) / self.step - 1e-9)
-            self.change(time, float(raised), f"an offset of {offset:.2f} m exceeds {self.boundary:g} m")
-        elif lower < self.boundary and time - self.calm_since >= self.hold:
-            self.change(time, lower, f"calm for {self.hold:g} s")
+        if needed > self.steps:
+            self.change(time, needed, f"an offset of {offset:.2f} m exceeds {self.boundary:g} m")
+        elif self.steps > 0 and time - self.calm_since >= self.hold:
+            self.change(time, self.steps - 1, f"calm for {self.hold:g} s")
         return self.boundary
 
-    def change(self, time: float, boundary: float, reason: str) -> None:
-        self.boundary = boundary
+    def change(self, time: float, steps: int, reason: str) -> None:
+        self.steps = steps
         self.calm_since = time
-        self.log.append(Change(time, boundary, reason))
+        self.log.append(Change(time, self.boundary, reason))
 
 
 class Controller(NamedTuple):
@@ -242,13 +258,19 @@ BASIC = Controller("basic", 1.0, 1.0)
 ADVANCED = Controller("advanced", 0.5, 1.6)
 
 
+def basic_offset(controller: Controller) -> float:
+    """How many metres the basic controller would be off where another is off by one, in white gusts."""
+    return (controller.natural_frequency / BASIC.natural_frequency) ** 1.5
+
+
 @dataclass
 class Monitor:
     """Watches the flight and chooses the controller (REPARE 2.1.3): quick as long as it can be, safe when it must.
 
-    It switches to the advanced controller when the boundary of `check` plus half the body no longer fits between UAV
+    It switches to the advanced controller when the boundary of `check` plus half the body no longer fits between route
     and wall, or when the level of resilience asks for it; and back when there has been `spare` metres of room for
-    `hold` seconds.
+    `hold` seconds. The boundary is that of the basic controller: under the advanced one, which holds the UAV tighter,
+    offsets count as much more, or its calm would seem the weather's, and the two would take turns.
 
     Attributes
     ----------
@@ -293,15 +315,28 @@ class Monitor:
             self.controller = ADVANCED
 
     def observe(self, time: float, offset: float, clearance: float) -> Controller:
-        """Take offset and clearance [m] observed at a time [s], and return the controller for the next moment.
+        """Take what is observed at a time [s], and return the controller for the next moment.
+
+        Parameters
+        ----------
+        time : float
+            [s], not before the last one.
+        offset : float
+            How far the UAV is from its route [m], at least 0.
+        clearance : float
+            Of the route where the UAV is [m], at least 0; infinite where there is no wall. That of the UAV would
+            count the offset twice.
 
         Raises
         ------
         ValueError
-            If an observation is negative or not a number.
+            If an observation is negative or not a number, or the time before the last one.
         """
         checks.number("clearance", clearance)
-        boundary = self.check.observe(time, offset)
+        if not clearance >= 0:
+            raise ValueError(f"clearance must be at least 0, got {clearance!r}")
+        checks.number("offset", offset)
+        boundary = self.check.observe(time, offset * basic_offset(self.controller))
         if self.level in ("off", "advanced"):
             return self.controller
         room = clearance - float(minimum_safe_distance(boundary, self.uav_diameter))

@@ -9,6 +9,7 @@ when the word has no bit in common with the bounding box of the move.
 import numpy as np
 import numpy.typing as npt
 
+from uavlab import checks
 from uavlab.city import City
 from uavlab.compiled import compiled
 
@@ -154,6 +155,15 @@ def checked_price(city: City, price: npt.ArrayLike) -> tuple[np.ndarray, float]:
     if not 0 <= cheapest <= checked.max() < np.inf:  # NaN fails too
         raise ValueError("price must be finite and at least 0 everywhere; use min_clearance to forbid voxels")
     return checked, cheapest
+
+
+def three(name: str, value: npt.ArrayLike) -> tuple[float, float, float]:
+    """A vector (east, north[, up]) as three numbers that a cache can take; without the third it is level."""
+    vector = checks.numbers(name, value)
+    if vector.shape not in ((2,), (3,)) or not np.isfinite(vector).all():
+        raise ValueError(f"{name} must be two or three finite numbers (east, north[, up]), got {value!r}")
+    east, north, up = (*vector.tolist(), 0.0)[:3]
+    return east, north, up
 
 
 def show(point: npt.ArrayLike) -> str:

@@ -14,7 +14,8 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.offsets import crossing_rate
-from uavlab.planners.astar import astar
+from uavlab.planners.astar import cheapest_route
+from uavlab.planners.grid import endpoints, three
 from uavlab.planners.shortcut import shortcut
 from uavlab.route import Route
 
@@ -40,9 +41,10 @@ def hazard_price(
     sigma : float
         σ of the offset on one axis [m], above 0.
     uav_radius : float
-        r [m], at least 0. The margin is u = clearance − r + μ·n, at least 0.
-    mean_offset : (3,) array
-        μ, where the steady wind holds the UAV, from its route [m]; n points away from the nearest wall.
+        r [m], at least 0. The margin is u = clearance − r − max(0, −μ·n), at least 0.
+    mean_offset : (2,) or (3,) array
+        μ, where the steady wind holds the UAV, from its route [m]; n points away from the nearest wall. Away from it
+        gives no credit: there may be another wall.
     speed : float
         v over ground [m/s], above 0: who passes faster is exposed for less time.
     natural_frequency : float
@@ -66,11 +68,11 @@ def hazard_price(
     for name, value in (("uav_radius", uav_radius), ("crash_price", crash_price)):
         checks.number(name, value)
         checks.not_negative(name, value)
-    mean = tuple(float(part) for part in checks.vectors(mean_offset=mean_offset)[0])
-    return cached_price(city, sigma, uav_radius, mean, crash_price * natural_frequency / speed)
+    mean = three("mean_offset", mean_offset)
+    return cached_price(city, float(sigma), float(uav_radius), mean, float(crash_price * natural_frequency / speed))
 
 
-@lru_cache(8)
+@lru_cache(4)
 def cached_price(
     city: City, sigma: float, uav_radius: float, mean_offset: tuple[float, ...], crash_price: float
 ) -> np.ndarray:
@@ -112,7 +114,8 @@ def hazard_astar(
         If start or goal can't be flown from or to, or an argument is out of its range.
     """
     price = hazard_price(city, sigma, **hazard)  # type: ignore[arg-type]
-    route = astar(city, start, goal, price=price)
+    source, target = endpoints(city, start, goal)
+    route = cheapest_route(city, source, target, city.occupied, price, cheapest=1.0)
     if any_angle:
         route = shortcut(route, city, price=price)
     return replace(route, planner="hazard A*")

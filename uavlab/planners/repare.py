@@ -17,8 +17,8 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.planners.astar import astar, penalty_zone
-from uavlab.planners.grid import endpoints, nearest_allowed, show
+from uavlab.planners.astar import astar, cheapest_route, penalty_zone
+from uavlab.planners.grid import endpoints, nearest_allowed, show, three
 from uavlab.planners.potential_field import repulsion
 from uavlab.resilience import (
     DISTURBANCES,
@@ -26,6 +26,7 @@ from uavlab.resilience import (
     checked_class,
     disturbance_class,
     gust_force,
+    physical_distance,
     resilience_level,
     safe_distance,
 )
@@ -81,15 +82,16 @@ def repare(
         Positions [m].
     load : {"dead", "light", "moderate", "heavy"}
         Class of the payload (REPARE Table 3).
-    disturbance : str, (3,) array, or callable
+    disturbance : str, (2,) or (3,) array, or callable
         A class ("none", "mild", "moderate", "heavy"); or the mean wind, where the air moves to [m/s]; or a function of
         the time in flight [s] that returns one of these.
     uav : UAV
         Its payload is replaced by the class of load.
     reading : {"table", "physical"}
         Of D_min, see `uavlab.resilience.safe_distance`.
-    mean_offset : (3,) array
-        μ, where a steady wind holds the UAV, from its route [m]: the zone is that much wider towards the wind.
+    mean_offset : (2,) or (3,) array
+        μ, where a steady wind holds the UAV, from its route [m]: the zone is wider by it before walls that the wind
+        blows to. It stays as it is when the disturbance changes.
     penalty : float
         ω₀, at least 0.
     force_weight, load_weight : float
@@ -99,7 +101,7 @@ def repare(
     interval : float
         How often the disturbance is looked at in flight [s], above 0.
     as_printed : bool
-        Eq. 13 with the 26 points of the outer ring and a fixed ω₀: the resultant force isn't used, and the route
+        Eq. 13 with the 26 points of the outer ring and a fixed ω₀: forces and mean offset aren't used, and the route
         depends on the direction of travel.
     record : bool
         Keep the order of expansion of the last plan in `info["order"]`.
@@ -109,7 +111,7 @@ def repare(
     Route
         `cost` is Σ d·(1 + ω·O_risk) [m]; after replanning, of the last plan. `info["expanded"]`, `info["elapsed"]` [s],
         `info["safe_distance"]` [m], and `info["plans"]`: when, where and for what it was planned. Conditions that
-        ground the UAV give `reached` False with the reason.
+        ground the UAV give `reached` False with the reason, and the points flown until then.
 
     Raises
     ------
@@ -121,16 +123,14 @@ def repare(
     checks.positive("interval", interval)
 
     def conditions_at(clock: float) -> Conditions:
-        return flight_conditions(
-            load, disturbance(clock) if callable(disturbance) else disturbance, uav, reading=reading, clock=clock
-        )
+        observed = disturbance(clock) if callable(disturbance) else disturbance
+        return flight_conditions(load, observed, uav, reading=reading, clock=clock)
 
     now = conditions_at(0.0)
-    endpoints(city, start, goal)
+    _, target = endpoints(city, start, goal)
     if now.grounded:
         return Route(np.empty((0, 3)), "REPARE", reached=False, reason=f"grounded: {now.grounded}", cost=np.inf)
-    widening = tuple(float(part) for part in checks.vectors(mean_offset=mean_offset)[0])
-    weights = (float(penalty), float(force_weight), float(load_weight))
+    widening = (0.0, 0.0, 0.0) if as_printed else three("mean_offset", mean_offset)
     for name, point in (("start", start), ("goal", goal)):
         refuse_swallowed(city, name, point, now.safe_distance, widening)
 
@@ -138,7 +138,9 @@ def repare(
         if as_printed:
             zone = penalty_zone(city, given.safe_distance, penalty=penalty, shape="ring")
             return astar(city, here, goal, price=zone, heuristic="euclidean", as_printed=True, record=record)
-        return astar(city, here, goal, price=repare_price(city, given, widening, weights, shape), record=record)
+        price = repare_price(city, given, widening, (penalty, force_weight, load_weight), shape)
+        source = int(city.code_of(city.cell_of(here)))
+        return cheapest_route(city, source, target, city.occupied, price, cheapest=1.0, record=record)
 
     route = plan(start, now)
     if callable(disturbance) and route.reached:
@@ -156,14 +158,15 @@ def replanned(
 ) -> Route:
     """Fly a route; where the conditions have changed at the first waypoint after an interval, plan the rest anew.
 
-    In flight a UAV may find itself nearer to a wall than the new D_min: then the dear zone drives it out.
+    In flight a UAV, or its goal, may find itself nearer to a wall than the new D_min: then the dear zone drives it out
+    as soon as it can, and lets it in as late as it can.
     """
     goal = route.points[-1]
     plans = [Plan(0.0, tuple(route.points[0]), now.name, now.safe_distance)]
     flown, clock = [route.points[0]], 0.0
     expanded, elapsed = route.info["expanded"], route.info["elapsed"]
     while (flown[-1] != goal).any():
-        ahead = min(int(np.searchsorted(route.distance, speed * interval - 1e-9)), len(route.points) - 1)
+        ahead = int(np.searchsorted(route.distance[1:-1], speed * interval - 1e-9)) + 1
         flown.extend(route.points[1 : ahead + 1])
         clock += float(route.distance[ahead]) / speed
         route = replace(route, points=route.points[ahead:])
@@ -189,10 +192,14 @@ def refuse_swallowed(
     widened = max(0.0, -float(city.wall_normal[index] @ mean_offset)) if any(mean_offset) else 0.0
     short = safe_distance + widened - float(city.clearance[index])
     if short > 1e-9 * city.cell:
-        reach = safe_distance + city.towards_wall(mean_offset)
+        outside = city.clearance >= safe_distance + city.towards_wall(mean_offset) - 1e-9 * city.cell
+        instead = "no voxel of the map keeps it"
+        if outside.any():
+            instead = nearest_allowed(city, np.asarray(point, dtype=float), outside)
+        needed = f"D_min of {safe_distance:g} m" + (f" and {widened:.2f} m of mean offset" if widened else "")
         raise ValueError(
             f"{name} {show(point)} is {city.clearance[index]:.2f} m from the nearest obstacle, {short:.2f} m nearer "
-            f"than D_min; {nearest_allowed(city, np.asarray(point, dtype=float), city.clearance >= reach)}"
+            f"than {needed}; {instead}"
         )
 
 
@@ -224,7 +231,8 @@ def flight_conditions(
     Parameters
     ----------
     load, disturbance, uav, reading
-        As for `repare`; the disturbance is a class or a mean wind.
+        As for `repare`; the disturbance is a class or a mean wind. Wind beyond the heaviest class needs more room than
+        it, by the physical reading.
     clock : float
         Time in flight [s], for messages.
 
@@ -237,21 +245,15 @@ def flight_conditions(
     ValueError
         If a class is unknown, or the wind is not two or three finite numbers.
     """
-    checked_class("load", load, LOADS)
-    loaded = uav.loaded(LOADS[load])
+    loaded = uav.loaded(LOADS[checked_class("load", load, LOADS)])
+    argument = f"disturbance after {clock:.1f} s" if clock else "disturbance"
     wind = None
     if isinstance(disturbance, str):
-        kind, speed = checked_class("disturbance", disturbance, DISTURBANCES), DISTURBANCES[disturbance]
+        kind, speed = checked_class(argument, disturbance, DISTURBANCES), DISTURBANCES[disturbance]
         name = f"{load} load, {kind} disturbance"
     else:
-        vector = checks.numbers("disturbance", disturbance)
-        if vector.shape not in ((2,), (3,)) or not np.isfinite(vector).all():
-            raise ValueError(
-                f"disturbance must be a class or a finite wind (east, north[, up]) [m/s]; "
-                f"after {clock:.1f} s it is {disturbance!r}"
-            )
-        wind = (float(vector[0]), float(vector[1]), float(vector[2]) if len(vector) == 3 else 0.0)
-        speed = float(np.linalg.norm(vector))
+        wind = three(f"{argument}, if no class, [m/s]", disturbance)
+        speed = float(np.linalg.norm(wind))
         kind = disturbance_class(speed)
         name = f"{load} load, wind {speed:.1f} m/s ({kind} disturbance)"
     force, reserve = gust_force(loaded, speed), float(loaded.horizontal_reserve())
@@ -261,13 +263,15 @@ def flight_conditions(
     elif force >= reserve:
         grounded = f"gusts push with {force:.1f} N, the thrust left over holds {reserve:.1f} N"
     distance = safe_distance(load, kind, reading=reading, uav=uav)
+    if speed > DISTURBANCES[kind]:
+        distance = max(distance, physical_distance(loaded, speed))
     return Conditions(name, grounded, distance, wind, force / reserve, loaded.weight / loaded.thrust)
 
 
 def repare_price(
     city: City,
     for_conditions: Conditions,
-    mean_offset: tuple[float, ...] = (0.0, 0.0, 0.0),
+    mean_offset: npt.ArrayLike = (0.0, 0.0, 0.0),
     weights: tuple[float, float, float] = (PENALTY, 1.0, 1.0),
     shape: str = "ball",
 ) -> np.ndarray:
@@ -283,9 +287,10 @@ def repare_price(
     for_conditions : Conditions
         D_min, the push of the gusts and the load ratio λ. Where the wind's direction is unknown the push counts as
         if it went towards the wall.
-    mean_offset : (3,) tuple
+    mean_offset : (2,) or (3,) array
         μ [m].
     weights : (ω₀, θ_F, θ_G)
+        At least 0.
     shape : {"ball", "ring"}
 
     Returns
@@ -296,12 +301,17 @@ def repare_price(
     Raises
     ------
     ValueError
-        If a weight is negative or not finite.
+        If a weight is negative or not finite, or another argument is not as above.
     """
-    return cached_price(city, for_conditions, mean_offset, weights, shape)
+    for name, weight in zip(("penalty", "force_weight", "load_weight"), weights, strict=True):
+        checks.number(name, weight)
+        checks.not_negative(name, weight)
+    penalty, force_weight, load_weight = (float(weight) for weight in weights)
+    offset = three("mean_offset", mean_offset)
+    return cached_price(city, for_conditions, offset, (penalty, force_weight, load_weight), shape)
 
 
-@lru_cache(8)
+@lru_cache(4)
 def cached_price(
     city: City,
     now: Conditions,
@@ -309,9 +319,6 @@ def cached_price(
     weights: tuple[float, float, float],
     shape: str,
 ) -> np.ndarray:
-    for name, weight in zip(("penalty", "force_weight", "load_weight"), weights, strict=True):
-        checks.number(name, weight)
-        checks.not_negative(name, weight)
     penalty, force_weight, load_weight = weights
     reach = now.safe_distance + city.towards_wall(mean_offset)
     near = np.minimum(city.clearance, reach)
