@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.quiver import Quiver
 
 from uavlab import plot, scene
 from uavlab.city import City
-from uavlab.planners import astar, least_risk, pareto_front
+from uavlab.planners import astar, least_risk, pareto_front, potential_field, potential_forces
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
 from uavlab.route import Route
 
@@ -45,6 +46,32 @@ def test_section_cuts_at_the_height_asked_for(table1):
 def test_section_outside_of_the_map(table1):
     with pytest.raises(ValueError, match="height must lie on the map, 0 to 100 m, got 120"):
         plot.section(table1, 120)
+
+
+def test_field_points_along_the_force_and_colours_the_potential(table1):
+    goal = (50, 44, 30)
+    trapped = potential_field(table1, (90, 18, 30), goal)
+    figure = plot.field(table1, 30, goal, trapped, area=(66, 96, 12, 40), spacing=2.0, push=8.0)
+    axes = figure.axes[0]
+    arrows = next(drawn for drawn in axes.collections if isinstance(drawn, Quiver))
+    places = np.column_stack([arrows.X, arrows.Y, np.full(arrows.N, 30.0)])
+    free = table1.is_free(places)
+    resultant = sum(potential_forces(table1, places[free], goal, push=8.0)[:2])[:, :2]
+    drawn = np.column_stack([arrows.U, arrows.V])
+    assert np.array_equal(np.ravel(arrows.Umask), ~free)  # none in a building
+    assert drawn[free] == pytest.approx(resultant / np.linalg.norm(resultant, axis=1, keepdims=True), abs=1e-6)
+    assert (axes.get_aspect(), axes.get_xlim(), axes.get_ylim()) == (1.0, (66, 96), (12, 40))
+    assert "potential U [unit of force · m]" in labels(figure)
+    assert figure.legends[0].get_texts()[0].get_text() == "potential field: not reached"
+
+
+def test_field_refuses_what_it_can_t_draw(table1):
+    with pytest.raises(ValueError, match="height must lie on the map, 0 to 100 m, got 120"):
+        plot.field(table1, 120, (50, 44, 30))
+    with pytest.raises(ValueError, match="spacing must be finite and above 0, got 0"):
+        plot.field(table1, 30, (50, 44, 30), spacing=0)
+    with pytest.raises(ValueError, match="reach must be finite and above 0, got -1"):
+        plot.field(table1, 30, (50, 44, 30), reach=-1)
 
 
 def test_profile_draws_height_and_clearance(table1, route):

@@ -12,6 +12,7 @@ from typing import Any
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize, to_hex, to_rgb
@@ -21,6 +22,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.planners.potential_field import potential_forces
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 
@@ -100,6 +102,68 @@ def section(
     add_color_bar(figure, axes, image, label)
     axes.set_facecolor("black")
     draw_routes(axes, routes)
+    axes.set_title(f"{city.name}, {height:g} m above the ground (buildings black)")
+    return finished(figure)
+
+
+def field(
+    city: City,
+    height: float,
+    goal: npt.ArrayLike,
+    *routes: Route,
+    area: tuple[float, float, float, float] | None = None,
+    spacing: float = 3.0,
+    **setting: Any,
+) -> Figure:
+    """A potential field in a horizontal section: its potential as colours and lines, arrows along its force.
+
+    Parameters
+    ----------
+    city : City
+    height : float
+        Where to cut [m].
+    goal : (3,) array
+        What attracts [m].
+    routes : Route
+        Seen from above.
+    area : (west, east, south, north), optional
+        Part of the map to show [m]; by default all of it.
+    spacing : float
+        From arrow to arrow [m].
+    setting
+        Of the field, as for `potential_forces`.
+
+    Raises
+    ------
+    ValueError
+        If the height lies outside of the map, or an argument is out of its range.
+    """
+    check_drawn(city, routes)
+    checks.positive("spacing", spacing)
+    k = level_of(city, height)
+    west, east, south, north = (*city.bounds[:, 0], *city.bounds[:, 1]) if area is None else area
+
+    def sampled(step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        x, y = np.meshgrid(np.arange(west + step / 2, east, step), np.arange(south + step / 2, north, step))
+        points = np.stack([x, y, np.full(x.shape, height)], axis=-1)
+        pull, push, potential = potential_forces(city, points, goal, **setting)
+        free = city.is_free(points)
+        return points, np.where(free[..., None], pull + push, np.nan), np.where(free, potential, np.nan)
+
+    figure, axes = new_figure(6.4, 5.4)
+    draw_map(axes, city, np.where(city.occupied[:, :, k], 1.0, np.nan), "gray_r", vmin=0, vmax=1)
+    points, _, potential = sampled(max(east - west, north - south) / 200)
+    levels = MaxNLocator(20).tick_values(np.nanmin(potential), np.nanquantile(potential, 0.93))  # walls rise out of it
+    image = axes.contourf(*points[..., :2].T, potential.T, levels, cmap=SEQUENTIAL, extend="max")
+    axes.contour(*points[..., :2].T, potential.T, levels, colors="white", linewidths=0.4)
+    add_color_bar(figure, axes, image, "potential U [unit of force · m]")
+    points, force, _ = sampled(spacing)
+    with np.errstate(invalid="ignore"):
+        direction = force / np.linalg.norm(force, axis=-1, keepdims=True)
+    axes.quiver(*points[..., :2].T, *direction[..., :2].T, pivot="mid", angles="xy", scale_units="xy",
+                scale=1.2 / spacing, width=0.005, edgecolor="white", linewidth=0.5)  # fmt: skip
+    draw_routes(axes, routes)
+    axes.set(xlim=(west, east), ylim=(south, north))
     axes.set_title(f"{city.name}, {height:g} m above the ground (buildings black)")
     return finished(figure)
 
