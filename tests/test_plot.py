@@ -61,7 +61,7 @@ def test_field_points_along_the_force_and_colours_the_potential(table1):
     assert np.array_equal(np.ravel(arrows.Umask), ~free)  # none in a building
     assert drawn[free] == pytest.approx(resultant / np.linalg.norm(resultant, axis=1, keepdims=True), abs=1e-6)
     assert (axes.get_aspect(), axes.get_xlim(), axes.get_ylim()) == (1.0, (66, 96), (12, 40))
-    assert "potential U [unit of force · m]" in labels(figure)
+    assert axes.child_axes[0].get_ylabel() == "potential U [unit of force · m]"
     assert figure.legends[0].get_texts()[0].get_text() == "potential field: not reached"
 
 
