@@ -1,0 +1,266 @@
+"""Exercises of chapter 8, REPARE: the price of a metre, Table 3 as a score, and a boundary that doesn't flutter.
+
+A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
+by how they are written.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from itertools import product
+
+import numpy as np
+
+from uavlab.planners import repulsion
+from uavlab.resilience import DISTURBANCES, LEVELS, LOADS, ConditionCheck, resilience_level
+
+Vector = tuple[float, float]
+Price = Callable[[float, float, Vector, Vector, float], float]
+
+ANGLES = np.linspace(0.0, 2 * np.pi, 9)
+NORMALS: list[Vector] = [(float(np.cos(angle)), float(np.sin(angle))) for angle in ANGLES]
+BEYOND = [(5.0, 3.5, (-0.4, 0.0), (1.0, 0.0), 0.6), (9.0, 5.5, (0.2, 0.1), (0.0, 1.0), 0.9)]
+CALM = [(d, 5.5, (0.0, 0.0), (1.0, 0.0), load) for d in (0.5, 1.5, 2.5, 3.5, 4.5) for load in (0.5, 0.9)]
+CALM += [(d, 3.5, (0.0, 0.0), (1.0, 0.0), 0.6) for d in (0.5, 1.5, 3.0)]
+WINDY = [(d, 5.5, (0.4, -0.1), normal, 0.6) for d in (1.5, 3.5, 4.5) for normal in NORMALS]
+
+
+def exercise_1(price: Price) -> str:
+    """08.1: the price of a metre near a wall, with wind and load."""
+    in_calm = [price(*case) for case in CALM]
+    if any(answer is None for answer in in_calm):
+        return "Your function returns nothing: its answer is a price."
+    if not np.allclose(in_calm, [right_price(*case) for case in CALM], rtol=1e-6):
+        for formula, hint in CALM_MISTAKES:
+            if np.allclose(in_calm, [formula(d, keep, load) for d, keep, _, _, load in CALM], rtol=1e-6):
+                return hint
+        return (
+            f"For {CALM[2][0]} m from a wall, D_min = 5.5 m, no wind and λ = 0.5 you get {float(in_calm[2]):.3f}. "
+            "Write the reasons in the bracket of Eq. 5 one below the other: how large is each?"
+        )
+    outside = [price(*case) for case in BEYOND]
+    if not np.allclose(outside, 1.0):
+        return (
+            f"In the zone it is right. At {BEYOND[0][0]} m, with D_min = {BEYOND[0][1]} m, you get "
+            f"{float(outside[0]):.3f}: what is O_risk there?"
+        )
+    in_wind = [price(*case) for case in WINDY]
+    if np.allclose(in_wind, [right_price(*case) for case in WINDY], rtol=1e-6):
+        return ""
+    for part, hint in WIND_MISTAKES:
+        if np.allclose(in_wind, [part(*case) for case in WINDY], rtol=1e-6):
+            return hint
+    return "Without wind it is right. With wind: which part of it points towards the wall, and what does the rest do?"
+
+
+def pushed(distance: float, keep: float) -> float:
+    return float(repulsion(distance, keep**3 / 4, keep))
+
+
+def right_price(distance: float, keep: float, wind: Vector, normal: Vector, load: float) -> float:
+    if distance >= keep:
+        return 1.0
+    return 1 + 2 * (1 + pushed(distance, keep) + max(0.0, -float(np.dot(wind, normal))) + load)
+
+
+CALM_MISTAKES: list[tuple[Callable[[float, float, float], float], str]] = [
+    (
+        lambda d, keep, load: 2 * (1 + pushed(d, keep) + load),
+        "That is ω. A metre also costs what it costs in the open.",
+    ),
+    (
+        lambda d, keep, load: 1 + 2 * (pushed(d, keep) + load),
+        "At the edge of your zone the wall's push is 0, and a UAV without weight would pay nothing. Which reason in "
+        "the bracket doesn't depend on anything?",
+    ),
+    (
+        lambda d, keep, load: 1 + 2 * (1 + pushed(d, keep)),
+        "The load is missing: two UAVs of different weight pay the same.",
+    ),
+    (
+        lambda d, keep, load: 1 + 1 + pushed(d, keep) + load,
+        "The bracket is right. How is it weighed against the open?",
+    ),
+    (
+        lambda d, keep, load: 1 + 2 * (1 + keep**3 / 4 * (1 / d - 1 / keep) + load),
+        "Your push isn't the gradient of the potential: Eq. 1 has another factor that depends on the distance.",
+    ),
+    (
+        lambda d, keep, load: 1 + 2 * (1 + (1 / d - 1 / keep) / d**2 + load),
+        "You take k_rep for 1. It depends on D_min.",
+    ),
+]
+
+WIND_MISTAKES: list[tuple[Price, str]] = [
+    (
+        lambda d, keep, wind, normal, load: (
+            1 + 2 * (1 + pushed(d, keep) + max(0.0, float(np.dot(wind, normal))) + load)
+        ),
+        "You charge for wind away from the wall, and not for wind towards it. Where does n point?",
+    ),
+    (
+        lambda d, keep, wind, normal, load: 1 + 2 * (1 + pushed(d, keep) - float(np.dot(wind, normal)) + load),
+        "Wind away from the wall makes your metre cheaper. It may turn: what does Eq. 5 do with it?",
+    ),
+    (
+        lambda d, keep, wind, normal, load: 1 + 2 * (1 + pushed(d, keep) + abs(float(np.dot(wind, normal))) + load),
+        "Wind away from the wall costs you as much as wind towards it. Only one of them is dangerous.",
+    ),
+    (
+        lambda d, keep, wind, normal, load: 1 + 2 * (1 + pushed(d, keep) + math.hypot(*wind) + load),
+        "You take the whole wind. Wind along the wall doesn't bring the UAV nearer to it.",
+    ),
+    (
+        lambda d, keep, wind, normal, load: (
+            1 + 2 * (1 + load + math.hypot(*(pushed(d, keep) * n + w for n, w in zip(normal, wind, strict=True))))
+        ),
+        "You take the size of the sum of two forces. That is way 2: look at what it does when they point against each "
+        "other.",
+    ),
+    (
+        lambda d, keep, wind, normal, load: right_price(d, keep, (0.0, 0.0), normal, load),
+        "Without wind it is right, and with wind it is the same: where is F_dist?",
+    ),
+]
+
+
+def exercise_2(score: Callable[[], tuple[Mapping[str, float], Mapping[str, float], Sequence[float]]]) -> str:
+    """08.2: points for loads and disturbances and thresholds that give Table 3."""
+    answer = score()
+    if answer is None:
+        return "Your function returns nothing: its answer is two dictionaries and four thresholds."
+    if len(answer) != 3:
+        return (
+            f"The answer has three parts: points by load, points by disturbance, thresholds. Yours has {len(answer)}."
+        )
+    loads, disturbances, thresholds = answer
+    for what, given, wanted in (("load", loads, LOADS), ("disturbance", disturbances, DISTURBANCES)):
+        missing = [name for name in wanted if name not in given]
+        if missing:
+            return f"There are no points for the {what} {missing[0]!r}."
+    if len(thresholds) != 4:
+        return f"Five levels have four thresholds between them; you have {len(thresholds)}."
+    if list(thresholds) != sorted(thresholds):
+        return "The thresholds must rise, from that of 'lower' to that of 'grounded'."
+    wrong = []
+    for load, disturbance in product(LOADS, DISTURBANCES):
+        points = loads[load] + disturbances[disturbance]
+        level, wanted_level = LEVELS[sum(points >= t for t in thresholds)], resilience_level(load, disturbance)
+        if level != wanted_level:
+            wrong.append((load, disturbance, points, level, wanted_level))
+    if not wrong:
+        return ""
+    if all(LEVELS.index(level) == LEVELS.index(wanted) - 1 for *_, points, level, wanted in wrong) and all(
+        points in thresholds for _, _, points, _, _ in wrong
+    ):
+        return "A sum that equals a threshold belongs to the level above it."
+    load, disturbance, points, level, wanted_level = wrong[0]
+    return (
+        f"{16 - len(wrong)} of 16 are right. The sum for {load} load in {disturbance} disturbance is {points:g}: "
+        f"that is {level!r}; Table 3 has {wanted_level!r}. Which entries with that level have a sum like it?"
+    )
+
+
+def exercise_3(boundaries: Callable[[Sequence[float], float, float, int, float], Sequence[float]]) -> str:
+    """08.3: the boundary after each offset, raised at once and lowered with hysteresis."""
+    example = boundaries([1, 2.7, 1, 1, 1, 1], 2, 0.5, 3, 0.8)
+    if example is None:
+        return "Your function returns nothing: its answer is a list with a boundary for each offset."
+    if len(example) != 6:
+        return f"There are six offsets in the example, and you return {len(example)} boundaries."
+    cases = [[1, 2.7, 1, 1, 1, 1], *([float(o) for o in offsets_seen(seed)] for seed in range(6))]
+    answers = [np.asarray(boundaries(case, 2.0, 0.5, 3, 0.8), dtype=float) for case in cases]
+    if all(np.allclose(answer, checked(case)) for answer, case in zip(answers, cases, strict=True)):
+        return ""
+    for how, hint in BOUNDARY_MISTAKES:
+        if all(np.allclose(answer, how(case)) for answer, case in zip(answers, cases, strict=True)):
+            return hint
+    case, answer = next((c, a) for c, a in zip(cases, answers, strict=True) if not np.allclose(a, checked(c)))
+    first = int(np.argmax(~np.isclose(answer, checked(case))))
+    before = checked(case)[first - 1] if first else 2.0
+    return (
+        f"After {', '.join(f'{offset:.2f}' for offset in case[max(first - 3, 0) : first + 1])} m (the last offsets, up "
+        f"to number {first + 1}) the boundary of {before:g} m should {'rise' if case[first] > before else 'not be'}"
+        f"{'' if case[first] > before else f' {answer[first]:g} m'}. Go through the three rules for this moment."
+    )
+
+
+def offsets_seen(seed: int) -> np.ndarray:
+    """Offsets of a flight with a gusty part in the middle [m], no two rules at a tie."""
+    rng = np.random.default_rng(800 + seed)
+    gusty = np.concatenate([np.full(10, 0.6), np.full(10, 2.2), np.full(40, 0.9)])
+    return np.abs(rng.normal(0.0, gusty)).round(3) + 3e-4
+
+
+def checked(case: Sequence[float]) -> list[float]:
+    check = ConditionCheck(predicted=2.0, step=0.5, hold=3.0, release=0.8)
+    return [check.observe(float(moment), float(offset)) for moment, offset in enumerate(case)]
+
+
+def walked(
+    case: Sequence[float],
+    *,
+    hold: int = 3,
+    lower_by: int = 1,
+    release: float = 0.8,
+    one_step: bool = False,
+    floor: bool = True,
+    calm_of_boundary: bool = False,
+    in_a_row: bool = True,
+    fresh: bool = True,
+) -> list[float]:
+    """The boundary by rules that may be wrong."""
+    steps, calm, history = 0, 0, []
+    for offset in case:
+        boundary = 2.0 + 0.5 * steps
+        is_calm = offset < release * (boundary if calm_of_boundary else boundary - 0.5)
+        calm = calm + 1 if is_calm else 0 if in_a_row else calm
+        if offset > boundary:
+            steps, calm = (steps + 1 if one_step else math.ceil((offset - 2.0) / 0.5)), 0
+        elif (steps > 0 or not floor) and calm >= hold:
+            steps, calm = (max(steps - lower_by, 0) if floor else steps - lower_by), 0 if fresh else calm
+        history.append(2.0 + 0.5 * steps)
+    return history
+
+
+BOUNDARY_MISTAKES: list[tuple[Callable[[Sequence[float]], list[float]], str]] = [
+    (
+        lambda case: walked(case, hold=10**6),
+        "Your boundary never comes down: one gust in the first minute, and the whole flight is as careful as that.",
+    ),
+    (
+        lambda case: walked(case, hold=1),
+        "It comes down after the first calm observation: that is fluttering. How many have to be calm, one after "
+        "another?",
+    ),
+    (
+        lambda case: walked(case, one_step=True),
+        "After a large offset your boundary is still below it. By how many steps does it have to rise?",
+    ),
+    (
+        lambda case: walked(case, floor=False),
+        "In a long calm your boundary falls below what was predicted.",
+    ),
+    (
+        lambda case: walked(case, lower_by=10**6),
+        "It comes down to the prediction at once. Down it goes by one step at a time.",
+    ),
+    (
+        lambda case: walked(case, calm_of_boundary=True),
+        "You call an offset calm when it is well below the boundary that holds. It would then be near the lower one "
+        "and push it up again: calm must be measured there.",
+    ),
+    (
+        lambda case: walked(case, release=1.0),
+        "You compare with the lower boundary itself. An offset just below it would soon exceed it: what is `release` "
+        "for?",
+    ),
+    (
+        lambda case: walked(case, in_a_row=False),
+        "You count all calm observations since the last change. They have to follow each other: what does a gust "
+        "between them do to the count?",
+    ),
+    (
+        lambda case: walked(case, fresh=False),
+        "After one step down the next follows at once. From what is the calm counted?",
+    ),
+]
