@@ -98,6 +98,82 @@ def test_clearance_is_infinite_without_obstacles_and_computed_once():
     assert city.clearance is city.clearance
 
 
+def box_city(cell=1.0):
+    """A block of 3 × 3 × 3 voxels in the middle of 13 × 13 × 13."""
+    occupied = np.zeros((13, 13, 13), bool)
+    occupied[5:8, 5:8, 5:8] = True
+    return City(occupied, cell)
+
+
+@pytest.mark.parametrize("cell", [0.5, 4.0])
+def test_normals_point_away_from_the_faces_edges_and_corners_of_a_block(cell):
+    normal = box_city(cell).wall_normal
+    for axis, side in itertools.product(range(3), (-1, 1)):
+        away = np.eye(3)[axis] * side
+        for steps in (2, 3, 6):  # from the block's centre; its faces are 1½ cells off
+            assert normal[tuple((6 + steps * away).astype(int))] == pytest.approx(away)
+    for signs in itertools.product((-1, 0, 1), repeat=3):
+        if any(signs):
+            expected = np.array(signs) / np.linalg.norm(signs)
+            assert normal[tuple(6 + 4 * np.array(signs))] == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_normals_are_unit_vectors_or_nothing_and_the_way_to_more_clearance(seed):
+    city = random_city(seed)
+    size = np.linalg.norm(city.wall_normal, axis=-1)
+    assert city.wall_normal.shape == (*city.shape, 3)
+    assert (np.isclose(size, 1) | (size == 0)).all()
+    assert city.wall_normal is city.wall_normal
+    for axis in range(3):
+        rises = np.gradient(city.clearance, axis=axis)
+        assert np.array_equal(np.sign(city.wall_normal[..., axis]), np.sign(np.where(size > 0, rises, 0)))
+
+
+def test_between_two_walls_equally_near_there_is_no_direction_across():
+    occupied = np.zeros((9, 5, 5), bool)
+    occupied[[0, -1]] = True
+    normal = City(occupied).wall_normal
+    assert normal[:, 2, 2, 0].tolist()[1:8] == [1, 1, 1, 0, -1, -1, -1]
+    assert (normal[4] == 0).all()
+
+
+def test_without_obstacles_or_with_one_layer_only_there_is_nothing_to_point_from():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert (City(EMPTY).wall_normal == 0).all()
+        assert (City(EMPTY).towards_wall((1, 2, 3)) == 0).all()
+        flat = City(np.eye(5, dtype=bool)[:, :, None]).wall_normal
+    assert (flat[..., 2] == 0).all()
+    assert flat[0, 4, 0] == pytest.approx(np.array([-1, 1, 0]) / 2**0.5)
+
+
+def test_what_points_towards_the_wall_is_the_part_of_a_vector_against_its_normal():
+    city = box_city()
+    east, corner = (8, 6, 6), (9, 9, 9)
+    assert city.towards_wall((-3, 4, 5))[east] == pytest.approx(3)
+    assert city.towards_wall((3, 4, 5))[east] == 0
+    assert city.towards_wall((-1, -2, -3))[corner] == pytest.approx(6 / 3**0.5)
+    assert city.towards_wall((-1, -2, 3.5))[corner] == 0
+    assert (city.towards_wall((0, 0, 0)) == 0).all()
+
+
+@given(st.tuples(*[st.floats(-10, 10)] * 3))
+def test_a_vector_and_its_opposite_never_both_point_towards_the_wall(vector):
+    city = box_city()
+    there, back = city.towards_wall(vector), city.towards_wall(np.negative(vector))
+    assert there.shape == city.shape
+    assert (np.minimum(there, back) == 0).all()
+    assert there - back == pytest.approx(-(city.wall_normal @ vector), abs=1e-12)
+    assert there.max() <= np.linalg.norm(vector) * (1 + 1e-12) + 1e-100
+
+
+@pytest.mark.parametrize("vector", [(1, 2), 3.0, (1, 2, np.nan), [(1, 2, 3)], (np.inf, 0, 0)])
+def test_what_is_no_direction_is_refused(vector):
+    with pytest.raises(ValueError, match="vector must be three finite numbers"):
+        City(EMPTY).towards_wall(vector)
+
+
 HOUSE = Building.roofed([(2, 3), (22, 3), (22, 13), (2, 13)], 5, [(7, 8, 10), (17, 8, 10)], name="hip roof")
 
 

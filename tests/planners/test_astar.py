@@ -357,6 +357,28 @@ def test_ring_against_the_ball_that_is_priced_by_default(table1, radius, missed,
     assert (ring & ~ball).sum() / ball.sum() == pytest.approx(added, abs=1e-4)
 
 
+@pytest.mark.parametrize("shape", ["ball", "ring"])
+def test_distance_and_penalty_may_differ_from_voxel_to_voxel(shape):
+    rng = np.random.default_rng(21)
+    city = City(rng.random((13, 12, 11)) < 0.01, cell=2.0)
+    distances, penalties = rng.choice([3.0, 5.0, 9.0], city.shape), rng.uniform(0, 3, city.shape)
+    price = penalty_zone(city, distances, penalty=penalties, shape=shape)
+    for distance in (3.0, 5.0, 9.0):
+        near = penalty_zone(city, distance, penalty=1.0, shape=shape) > 1
+        here = distances == distance
+        assert np.array_equal(price[here], np.where(near, 1 + penalties, 1.0)[here])
+    assert (price > 1).any()
+    assert (price == 1).any()
+
+
+@pytest.mark.parametrize("shape", ["ball", "ring"])
+def test_arrays_of_one_value_are_that_value(shape):
+    city = City(np.random.default_rng(8).random((9, 8, 7)) < 0.02)
+    expected = penalty_zone(city, 2.5, penalty=0.3, shape=shape)
+    everywhere = penalty_zone(city, np.full(city.shape, 2.5), penalty=np.full(city.shape, 0.3), shape=shape)
+    assert np.array_equal(everywhere, expected)
+
+
 def test_ring_overlooks_a_mast_that_stands_inside_it():
     occupied = np.zeros((11, 11, 11), bool)
     occupied[5, 5, :] = True
@@ -424,6 +446,14 @@ ENDS = (0.5, 0.5, 0.5), (3.5, 3.5, 3.5)
         (lambda: penalty_zone(OPEN, np.nan, penalty=1), "safe_distance must be .* got nan"),
         (lambda: penalty_zone(OPEN, 3.5, penalty=-0.1), "penalty must be finite and at least 0, got -0.1"),
         (lambda: penalty_zone(OPEN, 3.5, penalty=np.inf), "penalty must be finite .* got inf"),
+        (
+            lambda: penalty_zone(OPEN, np.ones((4, 4)), penalty=1),
+            r"safe_distance must be one number or have the city's shape \(4, 4, 4\), got \(4, 4\)",
+        ),
+        (lambda: penalty_zone(OPEN, 1, penalty=[1, 2]), r"penalty must be one number or .* got \(2,\)"),
+        (lambda: penalty_zone(OPEN, np.zeros((4, 4, 4)), penalty=1), "safe_distance must be .* above 0, got 0"),
+        (lambda: penalty_zone(OPEN, 1, penalty=np.full((4, 4, 4), -2)), "penalty must be .* at least 0, got -2"),
+        (lambda: penalty_zone(OPEN, "3.5", penalty=1), "safe_distance must be a number"),
         (lambda: penalty_zone(OPEN, 3.5, penalty=1, shape="cube"), "shape must be 'ball' or 'ring', got 'cube'"),
     ],
 )

@@ -99,7 +99,7 @@ def repare(
     shape : {"ball", "ring"}
         Of the zone, see `penalty_zone`.
     interval : float
-        How often the disturbance is looked at in flight [s], above 0.
+        How often the disturbance is looked at in flight [s], above 0; at the next waypoint after it.
     as_printed : bool
         Eq. 13 with the 26 points of the outer ring and a fixed ω₀: forces and mean offset aren't used, and the route
         depends on the direction of travel.
@@ -145,7 +145,9 @@ def repare(
     route = plan(start, now)
     if callable(disturbance) and route.reached:
         return replanned(route, now, plan, conditions_at, uav.cruise_speed, interval)
-    return named(route, route.points, [Plan(0.0, tuple(route.points[:1].ravel()), now.name, now.safe_distance)])
+    return named(
+        route, route.points, [Plan(0.0, tuple(route.points[:1].ravel().tolist()), now.name, now.safe_distance)]
+    )
 
 
 def replanned(
@@ -162,7 +164,7 @@ def replanned(
     as soon as it can, and lets it in as late as it can.
     """
     goal = route.points[-1]
-    plans = [Plan(0.0, tuple(route.points[0]), now.name, now.safe_distance)]
+    plans = [Plan(0.0, tuple(route.points[0].tolist()), now.name, now.safe_distance)]
     flown, clock = [route.points[0]], 0.0
     expanded, elapsed = route.info["expanded"], route.info["elapsed"]
     while (flown[-1] != goal).any():
@@ -174,7 +176,7 @@ def replanned(
         if then == now or (flown[-1] == goal).all():
             continue
         now = then
-        plans.append(Plan(clock, tuple(flown[-1]), now.name, now.safe_distance))
+        plans.append(Plan(clock, tuple(flown[-1].tolist()), now.name, now.safe_distance))
         if now.grounded:
             reason = f"grounded after {clock:.1f} s at {show(flown[-1])}: {now.grounded}"
             return replace(named(route, flown, plans), reached=False, reason=reason, cost=np.inf)
