@@ -149,10 +149,13 @@ class City:
         By central differences, so between two walls that are equally near it points along both; 0 where there is none.
         """
         clearance = np.where(np.isfinite(self.clearance), self.clearance, 0.0)
-        axes = [np.gradient(clearance, axis=a) if n > 1 else np.zeros(self.shape) for a, n in enumerate(self.shape)]
-        gradient = np.stack(axes, axis=-1)
-        size = np.linalg.norm(gradient, axis=-1, keepdims=True)
-        return np.divide(gradient, size, out=np.zeros_like(gradient), where=size > 1e-9)
+        normal = np.zeros((*self.shape, 3))
+        for axis, count in enumerate(self.shape):
+            if count > 1:
+                normal[..., axis] = np.gradient(clearance, axis=axis)
+        size = np.linalg.norm(normal, axis=-1, keepdims=True)
+        normal /= np.where(size > 1e-9, size, np.inf)
+        return normal
 
     def towards_wall(self, vector: npt.ArrayLike) -> np.ndarray:
         """How much of a vector (3,) points towards the nearest wall, max(0, −v·n), (nx, ny, nz)."""
@@ -161,7 +164,7 @@ class City:
             raise ValueError(f"vector must be three finite numbers (east, north, up), got {vector!r}")
         if not direction.any():
             return np.zeros(self.shape)
-        return np.maximum(0.0, -self.wall_normal @ direction)
+        return np.maximum(0.0, self.wall_normal @ -direction)
 
     @cached_property
     def height_above_surface(self) -> np.ndarray:
