@@ -187,6 +187,8 @@ except ValueError as error:
 # | [04 cities](04_cities.ipynb) | What does a planner see of a city, and what does the resolution cost? |
 # | [05 risk maps](05_risk_maps.ipynb) | Whom does a falling UAV hit, and what does it cost to fly around them? |
 # | [06 A*](06_astar.ipynb) | Why is A* exact, which estimate is best, and what is wrong with REPARE's Eq. 13? |
+# | [07 potential field](07_potential_field.ipynb) | What if the goal just pulls and the walls push? |
+# | [08 REPARE](08_repare.ipynb) | How should the weather change the route, and what beats the paper's planner? |
 #
 # All but this one end with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is
 # right, and if not, what to think about. The route of this notebook as a file for other programs:

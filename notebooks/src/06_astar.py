@@ -738,7 +738,7 @@ plot.section(hall, 6.5, None, *(replace(route, planner=name) for name, route in 
 # %% [markdown]
 # The soft zone is flat: half a metre from the frame is as dear as three. So with $\omega = 1$ the route takes the
 # short way around the frame; only a higher price sends it through the middle, where the zone is thinnest. A zone that
-# gets dearer towards the wall is what REPARE tries to make with a force, in notebook 08.
+# gets dearer towards the wall is what REPARE tries to make with a force, in [08 REPARE](08_repare.ipynb).
 #
 # *There is no way* is an answer, not an error: `reached` is `False`, the cost is infinite, and the reason says how
 # far the search got. It is also a proof. A* has seen every voxel within reach, so no route with that clearance exists
@@ -788,8 +788,8 @@ assert [round(route.length, 1) for route in (shortest, priced, safe)] == [66.4, 
 # | Fig. 12 | the open list leads out of the notch | yes: 66.4 m, but 0.5 m from the wall |
 # | | | with the penalty zone 71.2 m, straightened 67.7 m, both 3.5 m clear |
 #
-# Lengths and times against the potential field (REPARE's Table 2) have to wait until there is a potential field, in
-# notebook 08.
+# Lengths and times against the potential field (REPARE's Table 2) are in
+# [07 potential field](07_potential_field.ipynb) and [08 REPARE](08_repare.ipynb).
 #
 # ## Your turn
 #
