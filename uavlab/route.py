@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from uavlab import checks
 from uavlab.city import City
 
 
@@ -103,6 +104,7 @@ class Route:
             `city.clearance` of each voxel that the route passes through [m]; 0 outside of the map. It is taken at
             the voxel's centre; off the centre the true distance differs by at most half a voxel's diagonal.
         """
+        checks.instance("city", city, City)
         if len(self.points) == 0:
             return np.empty(0), np.empty(0)
         index, length = city.voxels_along(self.points)
@@ -131,6 +133,7 @@ class Route:
         ValueError
             If the values haven't the city's shape, or the route leaves the map.
         """
+        checks.instance("city", city, City)
         if np.shape(values) != city.shape:
             raise ValueError(f"values must have the city's shape {city.shape}, got {np.shape(values)}")
         if not city.inside(self.points).all():

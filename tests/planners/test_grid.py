@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from skimage.graph import MCP_Geometric
 
 from uavlab.city import City
+from uavlab.planners import astar, potential_field, repare
 from uavlab.planners.grid import (
     BOXES,
     HEURISTICS,
@@ -22,6 +23,7 @@ from uavlab.planners.grid import (
     node_at,
     show,
 )
+from uavlab.risk import CAMPUS_FLIGHT, reference_campus
 
 OFFSETS = list(itertools.product((-1, 0, 1), repeat=3))
 BITS = {offset: 1 << position for position, offset in enumerate(OFFSETS)}
@@ -185,3 +187,12 @@ def test_prices_become_floats_of_the_city_s_shape():
 
 def test_points_in_messages_have_one_decimal():
     assert show((90, 18.04, -0.5)) == "(90.0, 18.0, -0.5)"
+
+
+def test_a_risk_map_is_not_a_city():
+    campus = reference_campus()
+    for plan in (astar, potential_field, repare):
+        with pytest.raises(ValueError, match="city must be a City, got RiskMap"):
+            plan(campus, *CAMPUS_FLIGHT)
+    with pytest.raises(ValueError, match="city must be a City, got RiskMap"):
+        astar(campus.city, *CAMPUS_FLIGHT).clearance(campus)

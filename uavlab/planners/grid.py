@@ -134,6 +134,7 @@ def endpoints(
     flyable: np.ndarray | None = None,
 ) -> tuple[int, int]:
     """Codes of the start's and the goal's voxel; `ValueError` if one can't be flown from or to, or both are one."""
+    checks.instance("city", city, City)
     codes = (
         node_at(city, start, "start", min_clearance, flyable),
         node_at(city, goal, "goal", min_clearance, flyable),

@@ -97,6 +97,7 @@ def potential_field(
     ValueError
         If start or goal can't be flown from or to, or an argument is out of its range.
     """
+    checks.instance("city", city, City)
     if moves not in ("lattice", "continuous"):
         raise ValueError(f"moves must be 'lattice' or 'continuous', got {moves!r}")
     step = city.cell / 2 if step is None else step
