@@ -350,10 +350,11 @@ assert seen[2.0, "3.5 m all around"] > 15 * seen[0.0, "widened"] > 25 * seen[2.0
 # ## Table 2: longer than A*, shorter than the field
 #
 # REPARE's Table 2 compares mean length and time over random pairs, relative to the potential field. The lengths can be
-# met only with a field that moves on the same lattice of 26 moves and is pushed by every occupied voxel within 5 m;
-# that is the default of `potential_field`. A thousand pairs, 40 m or more apart, both ends 4.5 m or more from walls.
-# Intervals are 95 %, by drawing pairs again (bootstrap). Pairs on which the field doesn't arrive can't be compared
-# with it; between A* and REPARE all thousand count.
+# met only with a field that moves on the same lattice of 26 moves ([notebook 07](07_potential_field.ipynb) tries six
+# fields). Here it is the default of `potential_field`: every occupied voxel within 5 m pushes. A thousand pairs, 40 m
+# or more apart, both ends 4.5 m or more from walls. Intervals are 95 %, by drawing pairs again (bootstrap). Each figure
+# is a ratio of mean lengths. Pairs on which the field doesn't arrive can't be compared with it; between A* and REPARE
+# all thousand count.
 
 
 # %%
@@ -390,6 +391,27 @@ assert table2["REPARE"][2] < 1
 assert abs(table2["A*"][0] - 0.952) < 0.01
 assert abs(table2["REPARE, 4.5 m"][0] - 0.973) < 0.01
 
+# %% [markdown]
+# Notebook 07 has slightly other figures: other pairs (seed 7), the mean of the pairs' ratios, and a ring with a fixed
+# price for REPARE. Both statistics, on both sets of pairs, with REPARE at 3.5 m:
+
+# %%
+# NBVAL_CHECK_OUTPUT
+others = city.random_pairs(1000, 7, apart=40, min_clearance=4.5)
+planned = {8: [compared[name] for name in ("A*", "REPARE", "potential field")]}
+planned[7] = [[planner(city, *pair) for pair in others] for planner in (astar, repare, potential_field)]
+for seed, flown in planned.items():
+    ok = np.array([route.reached for route in flown[2]])
+    a, r, f = (np.array([route.length for route in routes_of]) for routes_of in flown)
+    of_means = a[ok].mean() / f[ok].mean(), r[ok].mean() / f[ok].mean(), r.mean() / a.mean()
+    of_pairs = (a / f)[ok].mean(), (r / f)[ok].mean(), (r / a).mean()
+    for kind, values in (("ratio of means", of_means), ("mean of ratios", of_pairs)):
+        print(f"seed {seed}, {kind}: A* {values[0]:.3f}, REPARE {values[1]:.3f}, REPARE/A* {values[2]:.3f}")
+    assert of_means[0] < of_pairs[0] < of_means[0] + 0.011
+
+# %% [markdown]
+# The statistic makes the difference, not the pairs. And the distance to keep:
+
 # %%
 # NBVAL_CHECK_OUTPUT
 roomy = city.random_pairs(300, 8, apart=40, min_clearance=5.5)
@@ -411,7 +433,7 @@ for name, seconds in took.items():
 # say which $D_\text{min}$ its table was made with, and for REPARE that decides. With 3.5 m ours is 1.4 % longer than
 # A*, with 4.5 m 2.2 %, as in the paper. Over the field that is 0.963, a hundredth below the paper's 0.973: pairs with
 # a long way round a building drop out of this column, since the field is trapped there. The order, A* before REPARE
-# before the field, holds in any case.
+# before the field, holds on the lattice. (A field that may fly in any direction is shorter than both: notebook 07.)
 #
 # **Time.** We print it and claim nothing. A* with the octile estimate takes a fraction of what it takes with the
 # straight distance, at the same cost; a field that sums over voxels in a slow loop is slow, one that looks up a
@@ -566,12 +588,18 @@ for name, (load, disturbance) in cases.items():
 #
 # ## Figures 8 to 17
 #
-# *Figs 8 to 10*: three planners, no disturbance. The field keeps farther off than it needs to, and flies longer.
+# *Figs 8 to 10*: three planners, no disturbance. The field's route is the longest, though its smallest clearance is no
+# larger than REPARE's:
 
 # %%
 far = (20, 8, 20), (80, 95, 60)
 quiet = replace(repare(city, *far, disturbance="none"), planner="REPARE, no disturbance")
-scene.show(city, quiet, astar(city, *far), potential_field(city, *far), safe_distance=quiet.info["safe_distance"])
+calm = quiet, astar(city, *far), potential_field(city, *far)
+for route in calm:
+    print(f"{route.planner:<22} {route.length:.1f} m, smallest clearance {route.clearance(city):.1f} m")
+assert calm[1].length < calm[0].length < calm[2].length
+assert calm[2].clearance(city) <= quiet.clearance(city)
+scene.show(city, *calm, safe_distance=quiet.info["safe_distance"])
 
 # %% [markdown]
 # *Figs 11 to 14*: the same three in gusts, out of the notch. A* flies half a metre from the wall. We push it off its
@@ -600,11 +628,13 @@ scene.show(city, flights[0], flights[1], trapped)
 # %%
 # NBVAL_CHECK_OUTPUT
 print(trapped.reason)
+hits = {}
 for route in (astar(city, notch, middle), repare(city, notch, middle)):
     ends = [blown(route, 1.0, seed).reached for seed in range(200)]
     print(f"{route.planner:<6} {route.length:.1f} m, {route.clearance(city)} m clear:",
           f"{200 - sum(ends)} of 200 flights hit a wall")  # fmt: skip
-    assert (sum(ends) > 190) == (route.planner == "REPARE")
+    hits[route.planner] = 200 - sum(ends)
+assert hits == {"A*": 106, "REPARE": 1}
 assert not trapped.reached
 
 # %% [markdown]
@@ -855,7 +885,7 @@ assert [round(route.length, 1) for route in kept.values()] == [71.2, 73.2, 74.6]
 # %% [markdown]
 # | REPARE | says | we find |
 # |---|---|---|
-# | Table 2 | lengths 0.952 (A\*), 0.973 (REPARE), 1 (field) | 0.950 [0.944, 0.956], 0.963 [0.958, 0.968]: order holds |
+# | Table 2 | lengths 0.952 (A\*), 0.973 (REPARE), 1 (field) | 0.950, 0.963 (4.5 m): order holds on the lattice |
 # | | REPARE/A\* 1.022 | with 4.5 m 1.022 [1.020, 1.023], with 3.5 m 1.014 [1.013, 1.015]: reached |
 # | | (whether the field always arrives isn't said) | it is trapped on 15.3 % of the thousand pairs |
 # | | times 0.558, 0.655, 1 | a statement about a program; expansions REPARE/A\* 1.40 |
@@ -864,7 +894,7 @@ assert [round(route.length, 1) for route in kept.values()] == [71.2, 73.2, 74.6]
 # | Table 4 | 3.5, 4.5, 5.5 m | kept exactly, on 41 pairs each |
 # | | the first case is *Intermediate* | Table 3 says *Lower* |
 # | | (distance by factor) | two *Advanced* differ: thrust left over, 22.1 and 13.5 N |
-# | Fig. 11 | A\* crashes when disturbed | yes: 109 of 200 flights, REPARE 1 |
+# | Fig. 11 | A\* crashes when disturbed | yes: 106 of 200 flights, REPARE 1 |
 # | Fig. 12 | the field is trapped, REPARE isn't | yes: 71.2 m, 3.5 m clear |
 # | Figs 15–17 | slow, moderate | can't be checked: no dynamics given |
 # | Eqs 11–13 | the cost of a route | depends on the direction: 38 and 33 of 100 pairs |
@@ -872,8 +902,8 @@ assert [round(route.length, 1) for route in kept.values()] == [71.2, 73.2, 74.6]
 # | | | as reasons that add up (our Eq. 5): keeps $D_\text{min}$ on all pairs |
 # | Alg. 1 | pseudo-code | can't be run: eight repairs |
 #
-# Intervals are 95 % by bootstrap over pairs, seed 8; with two other seeds A\* is at 0.950 and 0.955, REPARE/A\* at
-# 1.014. Beyond the paper: the zone widened towards the wind keeps a mean offset of 2 m from making fifteen times as
+# Intervals are 95 % by bootstrap over pairs, seed 8; lengths are ratios of means (seed 7: A\* 0.950, REPARE/A\* 1.015).
+# Beyond the paper: the zone widened towards the wind keeps a mean offset of 2 m from making fifteen times as
 # many touches, and a price by Rice's formula makes the edge of the zone, and the choice of its width, unnecessary.
 #
 # ## Your turn
