@@ -1,4 +1,4 @@
-"""Where a wreck lands that keeps its speed: ahead of the place of failure, by 33 to 40 m from 22 to 32 m height.
+"""Where a wreck lands that keeps its speed: ahead of the place of failure, by 33 to 39 m from 22 to 32 m height.
 
 The papers let it fall straight down. On a map of 5 m voxels it then lands seven voxels away from where its risk
 was counted. Here the ballistic fall is followed voxel by voxel until it meets the ground or a building.
@@ -10,7 +10,7 @@ import numpy as np
 
 from uavlab.compiled import compiled
 from uavlab.risk.fall import AIR_DENSITY, impact_energy, lethal_area, wreck_path
-from uavlab.risk.rates import EVEN_ODDS_ENERGY, FAILURE_RATE, LEAST_FATAL_ENERGY, vehicle_rate
+from uavlab.risk.rates import FAILURE_RATE, impact_fatality, vehicle_rate
 
 if TYPE_CHECKING:
     from uavlab.risk.model import RiskMap
@@ -24,7 +24,7 @@ class Wreckage(NamedTuple):
 
     offset: np.ndarray  # (S, 3) from the place of failure [cells]
     hits: np.ndarray  # (S,) failures per hour × lethal area [m²/h] if it lands at this step
-    energy: np.ndarray  # (S,) ln(E/β) if it lands at this step
+    energy: np.ndarray  # (S,) E [J] if it lands at this step
 
 
 def wreckage(risk_map: "RiskMap", direction: np.ndarray) -> Wreckage:
@@ -41,44 +41,34 @@ def wreckage(risk_map: "RiskMap", direction: np.ndarray) -> Wreckage:
     offset = np.column_stack([distance * heading[0], distance * heading[1], -drop]) / city.cell
     area = lethal_area(np.maximum(drop, 0.0), np.abs(forward), np.maximum(down, 1e-9), uav.diameter / 2)
     energy = impact_energy(uav.mass + uav.payload, np.abs(forward), np.abs(down))
-    return Wreckage(offset, FAILURE_RATE * area, np.log(np.maximum(energy, 1e-300) / LEAST_FATAL_ENERGY))
+    return Wreckage(offset, FAILURE_RATE * area, energy)
 
 
 def landing_rate(risk_map: "RiskMap", index: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Deaths per hour of flight [1/h] if the UAV flies in a direction (3,) through the centres of voxels (M, 3)."""
-    odds = 0.5 * np.log(EVEN_ODDS_ENERGY / LEAST_FATAL_ENERGY)
-    return follow(
-        risk_map.city.occupied,
-        wreckage(risk_map, direction),
-        np.ascontiguousarray(risk_map.population_density),
-        np.ascontiguousarray(risk_map.shelter),
-        np.ascontiguousarray(vehicle_rate(risk_map.vehicle_share)),
-        odds,
-        np.ascontiguousarray(index),
-    )
+    fall = wreckage(risk_map, direction)
+    i, j, step = landings(risk_map.city.occupied, fall.offset, np.ascontiguousarray(index)).T
+    deadly = fall.hits[step] * impact_fatality(fall.energy[step], risk_map.shelter[i, j])
+    return risk_map.population_density[i, j] * deadly + vehicle_rate(risk_map.vehicle_share)[i, j]
 
 
 @compiled
-def follow(occupied, fall, population, shelter, vehicles, odds, index):
-    """For each voxel the rate of the column in which the wreck lands: on the ground, on a roof or against a wall.
+def landings(occupied, offset, index):
+    """For each voxel the column (i, j) and the step at which the wreck meets the ground, a roof or a wall.
 
-    Beyond the border the layers are taken to go on as they are at it.
+    Beyond the border the layers are taken to go on as they are at it: the column is the nearest one on the map.
     """
     nx, ny, nz = occupied.shape
-    rate = np.empty(len(index))
+    landed = np.empty((len(index), 3), np.int64)
     for n in range(len(index)):
         step = 0
         while True:
-            i = int(np.floor(index[n, 0] + 0.5 + fall.offset[step, 0]))
-            j = int(np.floor(index[n, 1] + 0.5 + fall.offset[step, 1]))
-            k = int(np.floor(index[n, 2] + 0.5 + fall.offset[step, 2]))
+            i = int(np.floor(index[n, 0] + 0.5 + offset[step, 0]))
+            j = int(np.floor(index[n, 1] + 0.5 + offset[step, 1]))
+            k = int(np.floor(index[n, 2] + 0.5 + offset[step, 2]))
             inside = 0 <= i < nx and 0 <= j < ny and k < nz
-            if k < 0 or step == len(fall.hits) - 1 or (inside and occupied[i, j, k]):
+            if k < 0 or step == len(offset) - 1 or (inside and occupied[i, j, k]):
                 break
             step += 1
-        i, j = min(max(i, 0), nx - 1), min(max(j, 0), ny - 1)
-        power = fall.energy[step] / (4 * shelter[i, j]) if shelter[i, j] > 0 else np.sign(fall.energy[step]) * np.inf
-        if fall.energy[step] == 0:
-            power = 0.0
-        rate[n] = population[i, j] * fall.hits[step] / (1 + np.exp(odds - power)) + vehicles[i, j]
-    return rate
+        landed[n] = min(max(i, 0), nx - 1), min(max(j, 0), ny - 1), step
+    return landed
