@@ -136,12 +136,21 @@ class Route:
         checks.instance("city", city, City)
         if np.shape(values) != city.shape:
             raise ValueError(f"values must have the city's shape {city.shape}, got {np.shape(values)}")
-        if not city.inside(self.points).all():
-            raise ValueError("the route leaves the map, where values says nothing")
-        if len(self.points) == 0:
-            return 0.0
-        index, length = city.voxels_along(self.points)
+        index, length = self.voxels(city)
         return float(np.asarray(values, dtype=float)[tuple(index.T)] @ length)
+
+    def voxels(self, city: City) -> tuple[np.ndarray, np.ndarray]:
+        """The voxels (M, 3) that the route passes through, in order, and its length (M,) in each [m].
+
+        Raises
+        ------
+        ValueError
+            If the route leaves the map.
+        """
+        checks.instance("city", city, City)
+        if not city.inside(self.points).all():
+            raise ValueError("the route leaves the map, about which nothing is known")
+        return city.voxels_along(self.points)
 
     def resample(self, step: float) -> "Route":
         """The same way with a waypoint at least every `step` metres; all waypoints stay.

@@ -8,6 +8,9 @@ import importlib
 from dataclasses import dataclass
 from typing import Any
 
+NOTHING = "Your function returns nothing: it needs a line with return."
+"""The hint for what most beginners forget."""
+
 
 @dataclass(frozen=True)
 class Verdict:

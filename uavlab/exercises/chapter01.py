@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from uavlab.exercises import NOTHING
+
 Triple = tuple[float, float, float]
 
 SHOWERS = [(100.0, 0.1, 9.0, 0.0), (30.0, 0.25, 6.0, 0.2), (250.0, 0.04, 8.0, 1.0), (0.0, 0.1, 9.0, 0.5)]
@@ -28,8 +30,6 @@ COURSES = [
 ]
 TOO_STRONG = [(5.0, (0.0, -9.0), 90.0), (8.0, (-9.0, 1.0), 0.0)]
 """Air speed [m/s], wind (east, north) [m/s], course [degrees]; in the second list no heading holds the course."""
-
-NOTHING = "Your function returns nothing: it needs a line with return."
 
 
 def exercise_1(answer: Callable[..., float]) -> str:

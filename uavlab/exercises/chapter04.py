@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from uavlab.exercises import NOTHING
+
 SHAPE = (4, 5, 6)
 """No two extents are equal, so that none can stand for another."""
 
@@ -21,8 +23,6 @@ BOXES = [
 STREETS = [(10.0, 4.0), (10.0, 3.0), (10.0, 0.6), (7.0, 2.0), (1.5, 1.0), (1.5, 2.0)]
 ON_THE_WALL = [(10.0, 2.0), (2.0, 2.0), (12.0, 3.0)]
 """Gap and cell [m]; in the second list a grid can have centres on both walls."""
-
-NOTHING = "Your function returns nothing: it needs a line with return."
 
 
 def exercise_1(answer: Callable[[int, tuple[int, int, int]], Sequence[int]]) -> str:

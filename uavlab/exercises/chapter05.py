@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from uavlab.exercises import NOTHING
+
 GRAVITY = 9.81
 FALLS = [
     (0.0, 1.38, 0.3 * 0.0188, 1.225),
@@ -22,8 +24,6 @@ FALLS = [
 EVEN_ODDS_ENERGY, LEAST_FATAL_ENERGY = 1e6, 34.0
 BLOWS = [(energy, shelter) for energy in (5.0, 34.0, 100.0, 555.0, 1e4, 1e6) for shelter in (0.25, 0.5, 0.75, 1.0)]
 IN_THE_OPEN = [(5.0, 0.0), (33.0, 0.0), (35.0, 0.0), (555.0, 0.0), (1e7, 0.0)]
-
-NOTHING = "Your function returns nothing: it needs a line with return."
 
 
 def exercise_1(answer: Callable[[float, float, float, float], float]) -> str:

@@ -130,9 +130,9 @@ class RiskMap:
             If the route leaves the map, or there is none.
         """
         check_route(route)
-        below = route.integral(self.city, self.rate) / self.city.cell
         if not drift:
-            return below
+            return route.integral(self.city, self.rate) / self.city.cell
+        route.voxels(self.city)  # refuses a route that leaves the map
         total = 0.0
         for start, end in pairwise(route.points):
             index, length = self.city.voxels_along(np.array([start, end]))
@@ -151,8 +151,7 @@ class RiskMap:
         """
         check_route(route)
         city = self.city
-        route.integral(city, self.rate)  # refuses a route that leaves the map
-        index, length = city.voxels_along(route.points)
+        index, length = route.voxels(city)
         passed = np.unique(city.code_of(index[length > 1e-9 * city.cell]))
         return float(self.rate.ravel()[passed].sum())
 
