@@ -109,7 +109,6 @@ def run(options: argparse.Namespace) -> int:
         for point, default in zip((options.start, options.goal), default_flight(city, options.clearance), strict=True)
     )
     planner = options.planner or ("any-angle" if risk_map is None else "least-risk")
-    routes = []
     if planner == "least-risk":
         risk_map = risk_map or assumed_risk(city)
         routes = by_risk(risk_map, start, goal, options.clearance, options.detour)

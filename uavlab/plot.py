@@ -194,8 +194,9 @@ def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
     if too_low.any():
         axes = figure.axes[0]
         axes.set_title(f"{city.name}, {height:g} m above the ground (too low hatched)")
-        x, y = (city.origin[a] + city.cell * (np.arange(city.shape[a]) + 0.5) for a in range(2))
-        axes.contourf(x, y, too_low.T, levels=[0.5, 1.5], colors="none", hatches=["////"])
+        axes.contourf(
+            city.coordinates(0), city.coordinates(1), too_low.T, levels=[0.5, 1.5], colors="none", hatches=["////"]
+        )
     return finished(figure)
 
 
@@ -243,7 +244,8 @@ def front(routes: Sequence[Route], *marked: Route, label: str = "risk ∫ r ds/d
     figure, axes = new_figure(6.4, 4.2)
     axes.plot([r.length for r in routes], [r.cost for r in routes], "o-", color=ROUTE_COLORS[1], label="Pareto front",
               drawstyle="steps-post", linewidth=1)  # fmt: skip
-    styles = cycle(zip(("#D55E00", "#000000", "#CC79A7", "#009E73", "#E69F00"), "^sDvP", strict=True))
+    colors = [color for color in ROUTE_COLORS if color != ROUTE_COLORS[1]]
+    styles = cycle(zip(colors, "^sDvP", strict=True))
     for route, (color, marker) in zip(marked, styles, strict=False):
         axes.plot(route.length, route.cost, marker, color=color, markersize=9, label=label_of(route))
     axes.set(xlabel="length [m]", ylabel=label, yscale="log")

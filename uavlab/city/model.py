@@ -172,7 +172,7 @@ class City:
 
         0 in an obstacle. Roofs are taken from the buildings, exactly; from the voxels where the city knows none.
         """
-        levels = self.origin[2] + self.cell * (np.arange(self.shape[2]) + 0.5)
+        levels = self.coordinates(2)
         if self.buildings:
             surface = np.full(self.shape, self.origin[2])
             for building in self.buildings:
@@ -218,6 +218,10 @@ class City:
             raise ValueError(f"points must have shape (..., 3), got {points.shape}")
         index = np.floor((points - self.origin) / self.cell)
         return np.where(np.abs(index) < 2.0**62, index, -1).astype(np.int64)
+
+    def coordinates(self, axis: int) -> np.ndarray:
+        """Coordinates of the centres along an axis, 0 east, 1 north, 2 up, (n,) [m]."""
+        return self.origin[axis] + self.cell * (np.arange(self.shape[axis]) + 0.5)
 
     def center_of(self, index: npt.ArrayLike) -> np.ndarray:
         """Centres (..., 3) [m] of the voxels with indices (..., 3)."""

@@ -10,7 +10,6 @@ several ways that are worth keeping, cheaper or shorter; each is a label.
 import heapq
 import time
 from bisect import bisect_left
-from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -23,6 +22,7 @@ from uavlab.planners.astar import ROUNDING, TIE_BREAK
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, endpoints, nearest_allowed, show
 from uavlab.planners.heap import open_list, pop, push, room
 from uavlab.risk import RiskMap
+from uavlab.risk.model import heights_above_ground, high_enough
 from uavlab.route import Route
 
 MAX_TURN = MAX_PITCH = np.pi / 3
@@ -211,7 +211,7 @@ def query_of(risk_map: RiskMap, price: np.ndarray, source: int, target: int, lim
     apart = np.abs(MOVE_HEADING - np.arange(STATES)[:, None]) * np.pi / 4
     turn = np.minimum(apart, 2 * np.pi - apart) <= limits.max_turn + 1e-9
     turn[NO_HEADING] = turn[:, MOVE_HEADING == NO_HEADING] = True
-    flyable = replace(risk_map, safe_height=limits.safe_height, lowest_height=limits.lowest_height).flyable
+    flyable = high_enough(risk_map.city, limits.safe_height, limits.lowest_height)
     blocked = ~flyable | risk_map.city.blocked(limits.min_clearance)
     return Query(blocked, price, limits.max_pitch + 1e-9 >= MOVE_PITCH, turn, source, target)
 
@@ -279,8 +279,9 @@ def what_binds(risk_map: RiskMap, query: Query, limits: Limits, max_length: floa
     def opens(kept: Limits, name: str, value: float) -> bool:
         return shortest(kept._replace(**{name: value})) <= most
 
-    if np.isfinite(shortest(limits)):
-        return f"max_length is {max_length:g} m, the shortest route has {up(shortest(limits)):.2f} m"
+    length = shortest(limits)
+    if np.isfinite(length):
+        return f"max_length is {max_length:g} m, the shortest route has {up(length):.2f} m"
     looser = looser_values(risk_map, limits)
     cures = []
     for name, values in looser.items():
@@ -318,7 +319,7 @@ def looser_values(risk_map: RiskMap, limits: Limits) -> dict[str, list[float]]:
         "max_pitch": above(limits.max_pitch, (35.27, 45, 90)),
         "min_clearance": below(limits.min_clearance, city.clearance),
         "safe_height": below(limits.safe_height, city.height_above_surface),
-        "lowest_height": below(limits.lowest_height, city.cell * (np.arange(city.shape[2]) + 0.5)),
+        "lowest_height": below(limits.lowest_height, heights_above_ground(city)),
     }
 
 
@@ -377,6 +378,12 @@ def edge(query, move, node, neighbour):
 
 
 @compiled
+def state_after(heading, move, neighbour):
+    """The state in which a move arrives at a node; a vertical move keeps the heading."""
+    return neighbour * STATES + (heading if MOVE_HEADING[move] == NO_HEADING else MOVE_HEADING[move])
+
+
+@compiled
 def rest_of_cost(query, until, waiting):
     """Least cost from every node to the goal where turns are free: Dijkstra backwards from the goal.
 
@@ -429,7 +436,7 @@ def search_states(query, rest, g, parent, waiting):
                 continue
             neighbour = node + steps[move]
             cost = g[state] + edge(query, move, node, neighbour)
-            follower = neighbour * STATES + (heading if MOVE_HEADING[move] == NO_HEADING else MOVE_HEADING[move])
+            follower = state_after(heading, move, neighbour)
             if parent[follower] == UNSEEN or cost < g[follower] * ROUNDING:
                 g[follower] = cost
                 parent[follower] = 1 + move * STATES + heading
@@ -484,7 +491,7 @@ def search_labels(query, rest, rest_length, limits):
             if around & BOXES[move] or not query.climb[move] or not query.turn[heading, move]:
                 continue
             neighbour = node + steps[move]
-            follower = neighbour * STATES + (heading if MOVE_HEADING[move] == NO_HEADING else MOVE_HEADING[move])
+            follower = state_after(heading, move, neighbour)
             way = length + LENGTHS[move]
             if way + rest_length[neighbour] > limit or way >= shortest[follower] * ROUNDING:
                 continue

@@ -47,10 +47,10 @@ def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, mi
     """
     if not route.reached or len(route.points) < 2:
         return route
-    prices = None if price is None else checked_price(city, price)[0]
+    prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
     points = (route.points - city.origin) / city.cell
     blocked = city.blocked(min_clearance)
-    best, before = cheapest_subset(points, blocked, prices)
+    best, before = cheapest_subset(points, blocked, prices, cheapest)
     if not np.isfinite(best).all():
         leg = int(np.flatnonzero(~np.isfinite(best))[0])
         raise ValueError(
@@ -70,9 +70,8 @@ def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, mi
 
 
 @compiled
-def cheapest_subset(points, blocked, price):
+def cheapest_subset(points, blocked, price, least_price):
     """Least cost from the first to each waypoint, and the waypoint before it on the way."""
-    least_price = price.min() if price is not None else 1.0
     best = np.full(len(points), np.inf)
     before = np.zeros(len(points), np.int64)
     best[0] = 0.0

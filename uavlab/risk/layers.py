@@ -198,8 +198,7 @@ def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = H
 
 def column_centers(city: City) -> np.ndarray:
     """Centres (nx, ny, 2) of the columns of voxels, x and y [m]."""
-    x, y = (city.origin[a] + city.cell * (np.arange(city.shape[a]) + 0.5) for a in range(2))
-    return np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+    return np.stack(np.meshgrid(city.coordinates(0), city.coordinates(1), indexing="ij"), axis=-1)
 
 
 def check_degrees(name: str, points: np.ndarray) -> None:

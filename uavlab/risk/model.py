@@ -96,9 +96,7 @@ class RiskMap:
     @cached_property
     def flyable(self) -> np.ndarray:
         """Free voxels that are `safe_height` above what lies below and `lowest_height` above the ground, bool."""
-        ground = self.city.cell * (np.arange(self.city.shape[2]) + 0.5)
-        high_enough = self.city.height_above_surface >= self.safe_height - 1e-9
-        return ~self.city.occupied & high_enough & (ground >= self.lowest_height - 1e-9)
+        return high_enough(self.city, self.safe_height, self.lowest_height)
 
     @cached_property
     def rate_ahead(self) -> np.ndarray:
@@ -174,6 +172,17 @@ class RiskMap:
         checks.positive("speed", speed)
         check_route(route)
         return route.integral(self.city, self.rate) / (3600 * speed)
+
+
+def high_enough(city: City, safe_height: float, lowest_height: float) -> np.ndarray:
+    """Free voxels that are high enough above what lies below and above the ground, (nx, ny, nz) bool."""
+    above_surface = city.height_above_surface >= safe_height - 1e-9
+    return ~city.occupied & above_surface & (heights_above_ground(city) >= lowest_height - 1e-9)
+
+
+def heights_above_ground(city: City) -> np.ndarray:
+    """Heights of the centres of each layer above the floor of the map, (nz,) [m]."""
+    return city.cell * (np.arange(city.shape[2]) + 0.5)
 
 
 def check_route(route: Route) -> None:

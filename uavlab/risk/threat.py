@@ -45,7 +45,7 @@ def building_threat(city: City, *, constant: float = THREAT_CONSTANT) -> np.ndar
     checks.not_negative("constant", constant)
     if not city.buildings and city.occupied.any():
         raise ValueError("city must know its buildings, not only voxels: use read_geojson or City.from_buildings")
-    x, y, z = (city.origin[a] + city.cell * (np.arange(city.shape[a]) + 0.5) for a in range(3))
+    x, y, z = (city.coordinates(axis) for axis in range(3))
     threat = np.zeros(city.shape)
     for building in city.buildings:
         below = z < building.bounds[1, 2]
