@@ -41,6 +41,16 @@ def positive(name: str, value: npt.ArrayLike) -> None:
     refuse(values, np.isfinite(values) & (values > 0), f"{name} must be finite and above 0")
 
 
+def not_negative_number(name: str, value: npt.ArrayLike) -> None:
+    number(name, value)
+    not_negative(name, value)
+
+
+def positive_number(name: str, value: npt.ArrayLike) -> None:
+    number(name, value)
+    positive(name, value)
+
+
 def at_least_one(name: str, value: npt.ArrayLike) -> None:
     values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values >= 1), f"{name} must be finite and at least 1")

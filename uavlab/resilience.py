@@ -107,8 +107,7 @@ def gust_offset(uav: UAV, wind: float) -> float:
     ValueError
         If the wind is negative or not finite.
     """
-    checks.number("wind", wind)
-    checks.not_negative("wind", wind)
+    checks.not_negative_number("wind", wind)
     return float(STILL_OFFSET + STIFFNESS * gust_force(uav, wind) / uav.horizontal_reserve())
 
 
@@ -125,8 +124,7 @@ def load_class(payload: float) -> str:
     ValueError
         If the payload is negative, or heavier than the heaviest class.
     """
-    checks.number("payload", payload)
-    checks.not_negative("payload", payload)
+    checks.not_negative_number("payload", payload)
     name = next((name for name, upper in LOADS.items() if payload <= upper), None)
     if name is None:
         raise ValueError(f"payload must be at most {LOADS['heavy']:g} kg, the heaviest class, got {payload:g}")
@@ -141,8 +139,7 @@ def disturbance_class(wind: float) -> str:
     ValueError
         If the wind is negative or not a number.
     """
-    checks.number("wind", wind)
-    checks.not_negative("wind", wind)
+    checks.not_negative_number("wind", wind)
     return next((name for name, upper in DISTURBANCES.items() if wind <= upper), "heavy")
 
 
@@ -205,8 +202,7 @@ class ConditionCheck:
 
     def __post_init__(self) -> None:
         for name in ("predicted", "step", "hold"):
-            checks.number(name, getattr(self, name))
-            checks.positive(name, getattr(self, name))
+            checks.positive_number(name, getattr(self, name))
         checks.number("release", self.release)
         checks.share("release", self.release)
 
@@ -222,8 +218,7 @@ class ConditionCheck:
         ValueError
             If the offset is negative or not finite, or the time before the last one.
         """
-        checks.number("offset", offset)
-        checks.not_negative("offset", offset)
+        checks.not_negative_number("offset", offset)
         checks.number("time", time)
         checks.finite("time", time)
         if time < self.now:
@@ -305,8 +300,7 @@ class Monitor:
 
     def __post_init__(self) -> None:
         for name in ("uav_diameter", "spare", "hold"):
-            checks.number(name, getattr(self, name))
-            checks.positive(name, getattr(self, name))
+            checks.positive_number(name, getattr(self, name))
         if self.level not in LEVELS:
             raise ValueError(f"level must be one of {', '.join(map(repr, LEVELS))}, got {self.level!r}")
         if self.level == "grounded":

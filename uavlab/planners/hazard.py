@@ -63,11 +63,9 @@ def hazard_price(
         If an argument is out of its range.
     """
     for name, value in (("speed", speed), ("sigma", sigma), ("natural_frequency", natural_frequency)):
-        checks.number(name, value)
-        checks.positive(name, value)
+        checks.positive_number(name, value)
     for name, value in (("uav_radius", uav_radius), ("crash_price", crash_price)):
-        checks.number(name, value)
-        checks.not_negative(name, value)
+        checks.not_negative_number(name, value)
     mean = three("mean_offset", mean_offset)
     return cached_price(city, float(sigma), float(uav_radius), mean, float(crash_price * natural_frequency / speed))
 

@@ -103,8 +103,7 @@ def least_risk(
     if heuristic not in ("backward", "zero"):
         raise ValueError(f"heuristic must be 'backward' or 'zero', got {heuristic!r}")
     if max_length is not None:
-        checks.number("max_length", max_length)
-        checks.positive("max_length", max_length)
+        checks.positive_number("max_length", max_length)
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
     price = price_per_cell(risk_map, risk, length, threat, drift)
     source, target = flyable_endpoints(risk_map, start, goal, min_clearance)
@@ -224,8 +223,7 @@ def city_lengths(query: Query) -> Query:
 def price_per_cell(risk_map: RiskMap, risk: float, length: float, threat: float, drift: bool) -> np.ndarray:
     """Cost per cell of way in each voxel, (1 or 26, nx·ny·nz)."""
     for name, weight in (("risk", risk), ("length", length), ("threat", threat)):
-        checks.number(name, weight)
-        checks.not_negative(name, weight)
+        checks.not_negative_number(name, weight)
     if risk == length == threat == 0:
         raise ValueError("risk, length and threat are all 0: give at least one of them a weight above 0")
     price = np.full((1, *risk_map.city.shape), length * risk_map.city.cell)

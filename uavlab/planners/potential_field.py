@@ -101,8 +101,7 @@ def potential_field(
     if moves not in ("lattice", "continuous"):
         raise ValueError(f"moves must be 'lattice' or 'continuous', got {moves!r}")
     step = city.cell / 2 if step is None else step
-    checks.number("step", step)
-    checks.positive("step", step)
+    checks.positive_number("step", step)
     checks.whole("max_steps", max_steps, least=1)
     source, target = endpoints(city, start, goal)
     began = time.perf_counter()
@@ -172,8 +171,7 @@ def field_of(
         if value not in known:
             raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
     for name, number in (("pull", pull), ("push", push), ("reach", reach)):
-        checks.number(name, number)
-        checks.positive(name, number)
+        checks.positive_number(name, number)
     return Field(
         city.occupied, city.cell, goal - city.origin, attraction == "conic",
         float(pull), float(push), float(reach), obstacles == "surface",

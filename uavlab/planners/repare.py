@@ -119,8 +119,7 @@ def repare(
         If a class is unknown, D_min reaches over start or goal, the disturbance is not finite, or another argument is
         out of its range.
     """
-    checks.number("interval", interval)
-    checks.positive("interval", interval)
+    checks.positive_number("interval", interval)
 
     def conditions_at(clock: float) -> Conditions:
         observed = disturbance(clock) if callable(disturbance) else disturbance
@@ -306,8 +305,7 @@ def repare_price(
         If a weight is negative or not finite, or another argument is not as above.
     """
     for name, weight in zip(("penalty", "force_weight", "load_weight"), weights, strict=True):
-        checks.number(name, weight)
-        checks.not_negative(name, weight)
+        checks.not_negative_number(name, weight)
     penalty, force_weight, load_weight = (float(weight) for weight in weights)
     offset = three("mean_offset", mean_offset)
     return cached_price(city, for_conditions, offset, (penalty, force_weight, load_weight), shape)

@@ -112,8 +112,7 @@ def campus(zones: Sequence[dict[str, Any]], crowds: np.ndarray, cell: float, nam
 
     `crowds` (15, 15) are logarithms of how many times more people than usual are on squares of 10 m.
     """
-    checks.number("cell", cell)
-    checks.positive("cell", cell)
+    checks.positive_number("cell", cell)
     buildings = [
         Building.prism(
             [(z["x"][0], z["y"][0]), (z["x"][1], z["y"][0]), (z["x"][1], z["y"][1]), (z["x"][0], z["y"][1])],

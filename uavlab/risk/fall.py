@@ -130,8 +130,7 @@ def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_de
     """SciPy's solution of the fall until `depth` metres are lost: `sol(t)` is (distance, drop, and their rates)."""
     checks.instance("uav", uav, UAV)
     speed = uav.cruise_speed if speed is None else speed
-    checks.number("speed", speed)
-    checks.not_negative("speed", speed)
+    checks.not_negative_number("speed", speed)
     checks.within("pitch", pitch, -np.pi / 2, np.pi / 2, "rad (from degrees: numpy.radians)")
     fastest = terminal_speed(uav, air_density=air_density)
     drag = GRAVITY / fastest**2

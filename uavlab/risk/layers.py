@@ -176,8 +176,7 @@ def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = H
         If a name is none of Table 1's, a number not in [0, 1], or the shape not the city's ground plan.
     """
     checks.instance("city", city, City)
-    checks.number("high", high)
-    checks.not_negative("high", high)
+    checks.not_negative_number("high", high)
     open_ground = np.asarray(ground)
     if open_ground.dtype.kind == "O":  # names from pandas
         open_ground = np.asarray(open_ground.tolist())

@@ -66,8 +66,7 @@ class RiskMap:
         checks.within("shelter", self.shelter, 0.0, 1.0, "(0 none, 1 industry)")
         checks.within("vehicle_share", self.vehicle_share, 0.0, 1.0, "of the ground")
         for name in ("safe_height", "lowest_height"):
-            checks.number(name, getattr(self, name))
-            checks.not_negative(name, getattr(self, name))
+            checks.not_negative_number(name, getattr(self, name))
 
     def __repr__(self) -> str:
         return f"<RiskMap of {self.city.name}: {' × '.join(map(str, self.city.shape))} voxels of {self.city.cell:g} m>"
@@ -168,8 +167,7 @@ class RiskMap:
             If the speed is not above 0, the route leaves the map, or there is none.
         """
         speed = self.uav.cruise_speed if speed is None else speed
-        checks.number("speed", speed)
-        checks.positive("speed", speed)
+        checks.positive_number("speed", speed)
         check_route(route)
         return route.integral(self.city, self.rate) / (3600 * speed)
 

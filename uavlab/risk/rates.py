@@ -130,8 +130,7 @@ def person_rate(
     check_density(population_density)
     checks.instance("uav", uav, UAV)
     speed = uav.cruise_speed if speed is None else speed
-    checks.number("speed", speed)
-    checks.not_negative("speed", speed)
+    checks.not_negative_number("speed", speed)
     if ballistic:
         fall = ballistic_fall(height, uav, speed=speed, air_density=air_density)
         forward, down = fall.forward_speed, fall.fall_speed

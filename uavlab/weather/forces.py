@@ -248,8 +248,7 @@ def reference_wind(
         ("measured_mean", measured_mean),
         ("forecast_max", forecast_max),
     ):
-        checks.number(name, value)
-        checks.not_negative(name, value)
+        checks.not_negative_number(name, value)
     checks.at_least_one("gust_factor", gust_factor)
     mean = max(forecast_mean, measured_mean)
     return ReferenceWind(mean, mean if as_printed else max(forecast_max, gust_factor * mean))
