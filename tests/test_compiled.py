@@ -100,3 +100,8 @@ def test_compiled_code_older_than_the_newest_source_is_dropped(tmp_path):
         os.utime(tmp_path / name, (newest - age, newest - age))
     discard_stale(tmp_path)
     assert {file.name for file in tmp_path.iterdir()} == {"old.nbc", "just_as_new.nbi", "new.nbi"}
+
+
+def test_compiled_code_that_another_process_drops_meanwhile_is_no_error(tmp_path):
+    (tmp_path / "gone.nbi").symlink_to(tmp_path / "dropped by another")
+    discard_stale(tmp_path)

@@ -7,6 +7,7 @@ one warning.
 
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -46,5 +47,6 @@ def discard_stale(folder: Path) -> None:
     """
     newest = max(source.stat().st_mtime for source in Path(__file__).parent.rglob("*.py"))
     for index in folder.glob("*.nbi"):
-        if index.stat().st_mtime < newest:
-            index.unlink(missing_ok=True)
+        with suppress(FileNotFoundError):  # another process may drop it first
+            if index.stat().st_mtime < newest:
+                index.unlink()
