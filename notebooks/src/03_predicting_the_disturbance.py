@@ -179,7 +179,7 @@ plot.finished(figure)
 # Eight tables, drawn and split anew each time:
 
 # %%
-each = compare_models(range(8), setting="paper", n_jobs=2, each=True)
+each = compare_models(range(8), setting="paper", jobs=2, progress=False, each=True)
 paper = each.groupby("model", sort=False).mean()
 spread = each.groupby("model", sort=False).std()
 for name in PAPER_MODELS:
@@ -251,7 +251,7 @@ assert not set(both) & {1466, 5864, 7330}
 # ($a = 0.8$), with four classes and more noise ($s = 0.3$):
 
 # %%
-steady = compare_models(range(8), setting="steady wind", models=PAPER_MODELS, n_jobs=2, each=True)
+steady = compare_models(range(8), setting="steady wind", models=PAPER_MODELS, jobs=2, progress=False, each=True)
 steady_mean = steady.groupby("model", sort=False).mean()
 steady_reach = reach * steady.groupby("model", sort=False)[["accuracy", "r2"]].std()
 for name, measure in (("Ridge", "r2"), ("GaussianNB", "accuracy"), ("XGBClassifier", "accuracy")):
@@ -383,7 +383,7 @@ assert abs(np.mean(drawn) - limit) < 4 * np.std(drawn) / 10
 # The gap to the limit, computed with the probabilities of Eq. 6 so that luck plays no part:
 
 # %%
-real = compare_models(range(8), setting="greensboro", n_jobs=2)
+real = compare_models(range(8), setting="greensboro", jobs=2, progress=False)
 names = ["Ridge", "GaussianNB", "XGBClassifier", "ordinal", "log-offset"]
 for name in names:
     print(f"{name:<14} below the limit by {100 * paper.bayes_gap[name]:4.0f} points (paper), "

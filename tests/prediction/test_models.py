@@ -13,12 +13,12 @@ SEEDS = range(8)
 
 @pytest.fixture(scope="module")
 def paper():
-    return compare_models(SEEDS, n_jobs=2, each=True)
+    return compare_models(SEEDS, jobs=2, progress=False, each=True)
 
 
 @pytest.fixture(scope="module")
 def steady():
-    return compare_models(SEEDS, setting="steady wind", models=PAPER_MODELS, n_jobs=2, each=True)
+    return compare_models(SEEDS, setting="steady wind", models=PAPER_MODELS, jobs=2, progress=False, each=True)
 
 
 def interval(table, model, measure):

@@ -16,6 +16,7 @@ from uavlab import checks
 from uavlab.prediction.data import Dataset, Setting, make_dataset
 from uavlab.prediction.generator import bayes_accuracy, class_probabilities, offset_class
 from uavlab.prediction.requirements import require
+from uavlab.sweep import sweep
 
 if TYPE_CHECKING:
     import pandas
@@ -164,8 +165,8 @@ def compare_models(
     *,
     setting: str | Setting = "paper",
     models: Mapping[str, Model] = MODELS,
-    n_jobs: int = 1,
-    progress: bool = False,
+    jobs: int | None = None,
+    progress: bool = True,
     each: bool = False,
 ) -> "pandas.DataFrame":
     """Train every model on one dataset per seed, and compare.
@@ -178,10 +179,8 @@ def compare_models(
         As for `make_dataset`.
     models : mapping of name to function
         Each takes a `Dataset` and returns the prediction for the rows of its test.
-    n_jobs : int
-        Processes; the answer doesn't depend on it.
-    progress : bool
-        Show a bar (with tqdm).
+    jobs, progress
+        As for `uavlab.sweep.sweep`.
     each : bool
         One row per model and seed instead of their means.
 
@@ -196,12 +195,12 @@ def compare_models(
     ValueError
         If there are fewer than 2 seeds or one is repeated, or the setting is unknown.
     """
-    pandas, joblib = require("pandas"), require("joblib")
+    pandas = require("pandas")
     seeds = list(seeds)
     if len(seeds) < 2 or len(set(seeds)) < len(seeds):  # the same data twice would narrow the interval
         raise ValueError(f"seeds must be at least 2 and all different, got {seeds}")
-    jobs: Iterable[int] = require("tqdm").tqdm(seeds, unit="dataset") if progress else seeds
-    tables = joblib.Parallel(n_jobs=n_jobs)(joblib.delayed(scores_of_seed)(seed, setting, models) for seed in jobs)
+    cases = [{"seed": seed, "setting": setting, "models": models} for seed in seeds]
+    tables = sweep(scores_of_seed, cases, jobs=jobs, progress=progress, unit="dataset")
     table = pandas.DataFrame([row for rows in tables for row in rows])
     if each:
         return table

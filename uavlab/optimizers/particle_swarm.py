@@ -1,0 +1,155 @@
+"""Particle swarm optimisation (PSO-BAS Eqs 13-16): particles that remember their best and see the swarm's.
+
+v ← ω v + c1 r1 (p_best − x) + c2 r2 (g_best − x), x ← x + v. Whether a particle comes to rest depends on ω, c1 and c2
+(`stability`). With the printed ω = 1 none ever does. Here ω falls from 0.9 to 0.4: the swarm roams first and settles
+later; and no step is longer than a fifth of the range.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.optimizers.result import (
+    Counter,
+    Function,
+    Result,
+    checked_bounds,
+    checked_budget,
+    first_points,
+    keep_better,
+)
+
+SWARM, C1, C2 = 20, 1.5, 2.0
+"""N, c1 and c2 (PSO-BAS Table 3)."""
+
+INERTIA, PRINTED_INERTIA = (0.9, 0.4), (1.0, 1.0)
+"""ω at the beginning and at the end: ours, and that of PSO-BAS Table 3."""
+
+V_MAX = 0.2
+"""Longest step on each coordinate, as a share of its range; the paper has none."""
+
+
+def pso(
+    f: Function,
+    bounds: npt.ArrayLike,
+    budget: int,
+    rng: np.random.Generator | int,
+    *,
+    swarm: int = SWARM,
+    inertia: Sequence[float] = INERTIA,
+    c1: float = C1,
+    c2: float = C2,
+    v_max: float = V_MAX,
+    start: npt.ArrayLike | None = None,
+    as_printed: bool = False,
+) -> Result:
+    """Minimise a function with a particle swarm.
+
+    Parameters
+    ----------
+    f : callable
+        Takes points (N, D), returns their values (N,). NaN counts as worst, and is counted.
+    bounds : (D, 2) array
+        Lower and upper bound of each coordinate. A particle that would leave them stops there.
+    budget : int
+        How often f may be evaluated; at least once per particle.
+    rng : numpy.random.Generator or int
+        Or a seed for one.
+    swarm : int
+        Particles N, at least 1; usual are 10 to 50.
+    inertia : (2,) sequence
+        ω at the beginning and at the end, falling evenly in between.
+    c1, c2 : float
+        Pulls of the particle's own best and of the swarm's, at least 0.
+    v_max : float
+        Longest step as a share of the range of each coordinate, above 0; infinite for no limit.
+    start : (M, D) array, optional
+        First positions of M ≤ N particles; the others are drawn evenly within the bounds.
+    as_printed : bool
+        ω = 1 throughout and no limit of the step, in place of `inertia` and `v_max`.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    ValueError
+        If bounds are reversed or not finite, the budget is below one swarm, a start lies outside of the bounds, or
+        another argument is out of its range.
+    """
+    rng = np.random.default_rng(rng)
+    settings = swarm_settings(inertia, c1, c2, v_max, as_printed)
+    low, high = checked_bounds(bounds)
+    checks.whole("swarm", swarm, least=1)
+    count = Counter(f, len(low), checked_budget(budget, swarm, "one swarm"))
+    x = first_points(start, low, high, swarm, rng)
+    velocity = np.zeros_like(x)
+    best, value = x.copy(), count(x)
+    count.end_iteration()
+    while count.left > 0:
+        x, velocity = flown(x, velocity, best, best[value.argmin()], low, high, settings, count.made / budget, rng)
+        keep_better(best, value, x, count(x))
+        count.end_iteration()
+    return count.result(best, value)
+
+
+def flown(x, velocity, best, leader, low, high, settings, used, rng):
+    """Positions and velocities (N, D) after one step of Eq. 16, with the share `used` of the budget gone."""
+    (first, last), c1, c2, v_max = settings
+    r1, r2 = rng.random((2, *x.shape))
+    inertia = first + (last - first) * used
+    velocity = inertia * velocity + c1 * r1 * (best - x) + c2 * r2 * (leader - x)
+    velocity = np.clip(velocity, -v_max * (high - low), v_max * (high - low))
+    moved = np.clip(x + velocity, low, high)
+    return moved, np.where((moved > low) & (moved < high), velocity, 0.0)
+
+
+def swarm_settings(inertia, c1, c2, v_max, as_printed):
+    """ω's ends, c1, c2 and v_max, checked."""
+    ends = checks.numbers("inertia", PRINTED_INERTIA if as_printed else inertia)
+    if ends.shape != (2,) or not np.isfinite(ends).all():
+        raise ValueError(f"inertia must be two numbers, ω at the beginning and at the end, got {inertia!r}")
+    checks.not_negative_number("c1", c1)
+    checks.not_negative_number("c2", c2)
+    checks.number("v_max", v_max)
+    if not v_max > 0:
+        raise ValueError(f"v_max must be a share of the range, above 0, got {v_max!r}; infinite for no limit")
+    return tuple(ends.tolist()), c1, c2, np.inf if as_printed else v_max
+
+
+def stability(inertia: npt.ArrayLike, c1: npt.ArrayLike, c2: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """Factors by which a particle's mean and mean square shrink per step while both bests stand still at one point.
+
+    With φ = c1 r1 + c2 r2 of mean φ̄ = (c1 + c2)/2 and variance (c1² + c2²)/12, the way from the best goes on as
+    x_t+1 = (1 + ω − φ) x_t − ω x_t−1. The factors are the spectral radii of the recursions of E[x] and of E[x²]; below
+    1 it comes to rest. The mean does within the triangle |ω| < 1, c1 + c2 < 4 (1 + ω); the variance only in a smaller
+    region, for c1 = c2 where c1 + c2 < 24 (1 − ω²)/(7 − 5 ω) (Poli 2009).
+
+    Parameters
+    ----------
+    inertia, c1, c2 : float or array
+        ω, c1, c2, broadcast against each other.
+
+    Returns
+    -------
+    mean, variance : arrays of their shape
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite.
+    """
+    for name, value in (("inertia", inertia), ("c1", c1), ("c2", c2)):
+        checks.finite(name, value)
+    w, first, second = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (inertia, c1, c2)))
+    kept, spread = 1 + w - (first + second) / 2, (first**2 + second**2) / 12
+    zero, one = np.zeros_like(w), np.ones_like(w)
+    of_mean = np.array([[kept, -w], [one, zero]])
+    of_square = np.array([[kept**2 + spread, -2 * w * kept, w**2], [kept, -w, zero], [one, zero, zero]])
+    mean, variance = (
+        np.abs(np.linalg.eigvals(np.moveaxis(step, (0, 1), (-2, -1)))).max(axis=-1) for step in (of_mean, of_square)
+    )
+    return mean, variance

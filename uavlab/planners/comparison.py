@@ -1,0 +1,214 @@
+"""How good is a planner? Its gap to the exact optimum, over many maps and seeds, at the same number of evaluations.
+
+A single run on a single map says nothing of a method that draws at random. Nor do iterations: one of PSO measures as
+many curves as there are particles, one of PSO-BAS several times as many. So all get the same budget of evaluations
+(curves measured, ants walked), and what is compared are medians and shares over maps and seeds.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.planners.least_risk import least_risk
+from uavlab.risk import CAMPUS_FLIGHT, RiskMap
+from uavlab.route import Route
+from uavlab.sweep import sweep
+
+if TYPE_CHECKING:
+    import pandas
+
+Planner = Callable[..., Route]
+"""Called as planner(risk_map, start, goal, budget=…, rng=…)."""
+
+RESAMPLES = 2000
+"""Bootstrap samples of the maps for an interval of 95 %."""
+
+
+def optimality_gap(route: Route, exact: Route) -> float:
+    """How much more a route costs than the optimum, as a share of it: cost/cost* − 1.
+
+    Parameters
+    ----------
+    route : Route
+        Its `cost` in the unit of the exact route's; infinite gap if it doesn't arrive.
+    exact : Route
+        Of `least_risk` for the same question. A curve that isn't bound to the grid may cost less: a negative gap.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ValueError
+        If the exact route doesn't arrive, or a cost is not a number.
+    """
+    checks.instance("route", route, Route)
+    checks.instance("exact", exact, Route)
+    if not (exact.reached and 0 < exact.cost < np.inf):
+        raise ValueError(
+            f"exact must be a route that arrives, with a cost above 0, got {exact!r} of cost {exact.cost:g}"
+        )
+    if not route.reached:
+        return float("inf")
+    if np.isnan(route.cost):
+        raise ValueError("route has no cost: RiskMap.integral(route) gives it")
+    return float(route.cost / exact.cost - 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Runs of P planners on M maps with S seeds each.
+
+    Attributes
+    ----------
+    planners : list of str
+        Their P names.
+    gaps : (P, M, S) array
+        Gap to the exact optimum of each route, infinite if it doesn't arrive.
+    histories : (P, M, S, budget) array
+        Gap of the best so far after each evaluation; infinite before there was one.
+    iterations : list of P int arrays
+        How many evaluations had been made at the end of each iteration.
+    elapsed : (P, M, S) array
+        Time of each run [s].
+    exact : list of M Routes
+        The optima.
+    """
+
+    planners: list[str]
+    gaps: np.ndarray
+    histories: np.ndarray
+    iterations: list[np.ndarray]
+    elapsed: np.ndarray
+    exact: list[Route]
+
+    def table(self) -> "pandas.DataFrame":
+        """A row per planner: median gap with its 95 % interval, 90 % quantile [%], runs that didn't arrive [%], time.
+
+        The interval is a bootstrap over the maps: runs on the same map are not independent.
+        """
+        import pandas
+
+        rows = []
+        for name, gaps, elapsed in zip(self.planners, self.gaps, self.elapsed, strict=True):
+            low, high = over_maps(np.median, gaps)
+            rows.append(
+                {
+                    "planner": name,
+                    "median": 100 * np.median(gaps),
+                    "low": 100 * low,
+                    "high": 100 * high,
+                    "90 %": 100 * np.quantile(gaps, 0.9, method="higher"),
+                    "failed": 100 * np.isinf(gaps).mean(),
+                    "seconds": np.median(elapsed),
+                }
+            )
+        return pandas.DataFrame(rows).set_index("planner")
+
+    def wins(self, planner: str, other: str) -> tuple[float, float, float]:
+        """Share of runs (map, seed) in which a planner's gap is less than another's, and its 95 % interval.
+
+        Ties count half. The interval is a bootstrap over the maps.
+        """
+        for name, value in (("planner", planner), ("other", other)):
+            if value not in self.planners:
+                raise ValueError(f"{name} must be one of {', '.join(self.planners)}, got {value!r}")
+        a, b = (self.gaps[self.planners.index(name)] for name in (planner, other))
+        won = np.where(a == b, 0.5, a < b)
+        return float(won.mean()), *over_maps(np.mean, won)
+
+    def converged(self, within: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
+        """When each run came to within a share of its final cost: evaluations and iterations, (P, M, S) each."""
+        checks.number("within", within)
+        checks.share("within", within)
+        final = 1 + self.histories[..., -1:]
+        with np.errstate(invalid="ignore"):
+            near = 1 + self.histories <= (1 + within) * final
+        evaluations = np.where(near.any(axis=-1), near.argmax(axis=-1) + 1, self.histories.shape[-1])
+        iterations = [np.searchsorted(ends, made) + 1 for ends, made in zip(self.iterations, evaluations, strict=True)]
+        return evaluations, np.array(iterations)
+
+
+def over_maps(statistic: Callable[..., Any], values: np.ndarray) -> tuple[float, float]:
+    """95 % interval of a statistic of values (M, S), by resampling the maps."""
+    rng = np.random.default_rng(0)
+    drawn = values[rng.integers(len(values), size=(RESAMPLES, len(values)))]
+    low, high = np.quantile(statistic(drawn.reshape(RESAMPLES, -1), axis=1), [0.025, 0.975], method="nearest")
+    return float(low), float(high)
+
+
+def compare_planners(
+    planners: Mapping[str, Planner],
+    maps: Sequence[RiskMap],
+    *,
+    seeds: Iterable[int] = range(10),
+    budget: int = 4000,
+    start: npt.ArrayLike = CAMPUS_FLIGHT[0],
+    goal: npt.ArrayLike = CAMPUS_FLIGHT[1],
+    jobs: int | None = None,
+    progress: bool = True,
+) -> Comparison:
+    """Run planners on maps with seeds at the same number of evaluations, against the exact optimum of each map.
+
+    Parameters
+    ----------
+    planners : mapping of name to function
+        Called as planner(risk_map, start, goal, budget=…, rng=…), such as `ant_colony` or, with settings,
+        `functools.partial(waypoint_swarm, optimizer="pso")`. They minimise the risk, as `least_risk` by default.
+    maps : sequence of RiskMap
+    seeds : iterable of int
+        One run of each planner on each map with each.
+    budget : int
+        Evaluations of each run.
+    start, goal : (3,) arrays
+        Positions [m], the same on all maps.
+    jobs, progress
+        As for `sweep`.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    ValueError
+        If there are no planners, maps or seeds, a seed is repeated, a map has no route at all, or a planner takes
+        another number of evaluations than the budget.
+    """
+    seeds = list(seeds)
+    if not planners or not len(maps) or not seeds:
+        raise ValueError("planners, maps and seeds must each have at least one")
+    if len(set(seeds)) < len(seeds):  # the same run twice would narrow an interval
+        raise ValueError(f"seeds must all be different, got {seeds}")
+    exact = [least_risk(risk_map, start, goal) for risk_map in maps]
+    for number, route in enumerate(exact):
+        if not route.reached:
+            raise ValueError(f"maps must have a route from start to goal, maps[{number}] has none: {route.reason}")
+    cases = [
+        {"planner": planner, "risk_map": risk_map, "start": start, "goal": goal, "budget": budget, "rng": seed}
+        for planner in planners.values()
+        for risk_map in maps
+        for seed in seeds
+    ]
+    routes = sweep(one_run, cases, jobs=jobs, progress=progress, unit="run")
+    shape = (len(planners), len(maps), len(seeds))
+    for route in routes:
+        if route.info["evaluations"] != budget:
+            raise ValueError(
+                f"planners must use the budget of {budget}, {route.planner} used {route.info['evaluations']}"
+            )
+    least = np.array([route.cost for route in exact])[None, :, None]
+    gaps = np.array([route.cost for route in routes]).reshape(shape) / least - 1
+    histories = np.array([route.info["history"] for route in routes]).reshape(*shape, budget) / least[..., None] - 1
+    elapsed = np.array([route.info["elapsed"] for route in routes]).reshape(shape)
+    firsts = routes[:: len(maps) * len(seeds)]
+    return Comparison(list(planners), gaps, histories, [r.info["iterations"] for r in firsts], elapsed, exact)
+
+
+def one_run(planner: Planner, **case: Any) -> Route:
+    return planner(**case)

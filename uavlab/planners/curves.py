@@ -1,0 +1,171 @@
+"""What a curve through a risk map costs, and how far it breaks the limits: exactly, voxel by voxel.
+
+A curve is a line of short straight legs. Its cost is the integral of the price; its violations are the metres in voxels
+that may not be flown, and the angles by which legs turn or climb too much. An optimiser finds every gap that
+samples along the way would leave: measured at a quarter of a voxel, it claims what isn't so.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab.city.voxels import voxels_on_segment
+from uavlab.compiled import compiled
+from uavlab.planners.least_risk import Limits, flyable_endpoints, query_of
+from uavlab.risk import RiskMap
+from uavlab.spline import cubic_bspline, fitted, subdivided
+
+PER_SEGMENT = 8
+"""Straight legs by which a segment of a curve is drawn and measured."""
+
+SLACK = 1e-9
+"""Rounding that a limit on an angle allows [rad]."""
+
+
+class Terrain(NamedTuple):
+    """A map for compiled code."""
+
+    price: np.ndarray  # (nx, ny, nz): cost per cell of way
+    closed: np.ndarray  # (nx, ny, nz) bool
+    max_turn: float
+    max_pitch: float
+
+
+class Task(NamedTuple):
+    """Which curves to measure; all positions in cells."""
+
+    terrain: Terrain
+    source: np.ndarray
+    target: np.ndarray
+    spline: bool  # curves are B-splines with these control points, or else lines with these corners
+    unflyable: float  # what a curve costs more that breaks a limit
+
+    def lines(self, control: np.ndarray, per_segment: int) -> np.ndarray:
+        """Curves as straight legs (N, P, 3), from control points (N, K + 2, 3)."""
+        return cubic_bspline(control, per_segment) if self.spline else control
+
+    def costs(self, control: np.ndarray, per_segment: int) -> np.ndarray:
+        """Costs (N,) of curves (N, K + 2, 3); whichever breaks a limit costs more than any that doesn't."""
+        costs, closed, angles = costs_of(self.terrain, self.lines(control, per_segment))
+        broken = closed + angles
+        way = np.linalg.norm(self.target - self.source)
+        return costs + np.where(broken > 0, self.unflyable * (1 + broken / way), 0.0)
+
+    def finer(self, control: np.ndarray) -> np.ndarray:
+        """Control points (2 K + 3, 3) of the same curve as (K + 2, 3), with one more between each two."""
+        if self.spline:
+            return subdivided(control)
+        finer = np.empty((2 * len(control) - 1, 3))
+        finer[0::2], finer[1::2] = control, (control[:-1] + control[1:]) / 2
+        return finer
+
+    def nearest(self, points: np.ndarray, count: int) -> np.ndarray:
+        """`count` control points of a curve along the points of a route (M, 3)."""
+        if self.spline:
+            return fitted(points, count)
+        distance = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+        return np.stack([np.interp(np.linspace(0, distance[-1], count), distance, axis) for axis in points.T], axis=1)
+
+
+def task_of(
+    risk_map: RiskMap, start: npt.ArrayLike, goal: npt.ArrayLike, price: np.ndarray, limits: Limits, spline: bool
+) -> Task:
+    """The question of `least_risk`, for curves: from the centre of the start's voxel to that of the goal's."""
+    codes = flyable_endpoints(risk_map, start, goal, limits.min_clearance)
+    blocked = query_of(risk_map, price, *codes, limits).blocked
+    price = price.reshape(risk_map.city.shape)
+    source, target = risk_map.city.index_of(np.array(codes)) + 0.5
+    way = np.linalg.norm(target - source)
+    terrain = Terrain(price, blocked, limits.max_turn, limits.max_pitch)
+    return Task(terrain, source, target, spline, float(10 * way * price[~blocked].max()))
+
+
+class Measure:
+    """Measures curves, counts them, and notes the least cost."""
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+        self.histories: list[np.ndarray] = []
+        self.iterations: list[int] = []
+        self.made = 0
+
+    def __call__(self, control: np.ndarray, per_segment: int = PER_SEGMENT) -> np.ndarray:
+        """Costs (N,) of curves (N, K + 2, 3), see `Task.costs`."""
+        values = self.task.costs(control, per_segment)
+        self.note(np.where(values >= self.task.unflyable, np.inf, values))
+        return values
+
+    def note(self, costs: np.ndarray, iterations: npt.ArrayLike = ()) -> None:
+        """Note costs that were found, and after how many of them iterations ended."""
+        self.iterations += [self.made + int(end) for end in np.asarray(iterations)]
+        self.histories.append(costs)
+        self.made += len(costs)
+
+    @property
+    def history(self) -> np.ndarray:
+        """Least cost of a curve that keeps the limits, after each."""
+        return np.minimum.accumulate(np.concatenate(self.histories))
+
+
+@compiled
+def costs_of(terrain, lines):
+    """Of polylines (N, P, 3): cost [price·cells], way in closed voxels [cells], and excess of angles [rad]."""
+    costs, closed, angles = np.zeros(len(lines)), np.zeros(len(lines)), np.zeros(len(lines))
+    for n in range(len(lines)):
+        for p in range(lines.shape[1] - 1):
+            cost, shut = along(terrain, lines[n, p], lines[n, p + 1])
+            costs[n] += cost
+            closed[n] += shut
+            angles[n] += excess(terrain, lines[n], p)
+    return costs, closed, angles
+
+
+@compiled
+def along(terrain, start, end):
+    """∫ price ds over a straight leg, and how much of it is in closed voxels or off the map [cells]."""
+    length = math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2 + (end[2] - start[2]) ** 2)
+    voxels, leave = voxels_on_segment(start, end)
+    nx, ny, nz = terrain.closed.shape
+    cost = shut = entered = 0.0
+    for m in range(len(voxels)):
+        i, j, k = voxels[m]
+        stay = (leave[m] - entered) * length
+        entered = leave[m]
+        if 0 <= i < nx and 0 <= j < ny and 0 <= k < nz:
+            cost += stay * terrain.price[i, j, k]
+            shut += stay * terrain.closed[i, j, k]
+        else:
+            shut += stay
+    return cost, shut
+
+
+@compiled
+def excess(terrain, line, p):
+    """How far leg p climbs too much and turns too much against the leg before it [rad].
+
+    Legs shorter than a voxel may turn only in proportion: `max_turn` is per corner and per length of a voxel.
+    """
+    dx, dy, dz = line[p + 1] - line[p]
+    level = math.hypot(dx, dy)
+    over = max(0.0, abs(math.atan2(dz, level)) - terrain.max_pitch - SLACK)
+    if p > 0:
+        ex, ey, ez = line[p] - line[p - 1]
+        level_before = math.hypot(ex, ey)
+        if level > SLACK and level_before > SLACK:
+            turn = abs(math.atan2(ex * dy - ey * dx, ex * dx + ey * dy))
+            mean = 0.5 * (math.hypot(level, dz) + math.hypot(level_before, ez))
+            over += max(0.0, turn - terrain.max_turn * min(1.0, mean) - SLACK)
+    return over
+
+
+def breaches(task: Task, line: np.ndarray, cell: float) -> str:
+    """Words for the limits that a curve (P, 3) breaks."""
+    _, closed, _ = costs_of(task.terrain, line[None])
+    climbs = costs_of(task.terrain._replace(max_turn=np.inf), line[None])[2]
+    turns = costs_of(task.terrain._replace(max_pitch=np.inf), line[None])[2]
+    words = [f"flies {closed[0] * cell:.1f} m where it may not"] if closed[0] > 0 else []
+    words += ["climbs more than max_pitch"] if climbs[0] > 0 else []
+    words += ["turns more than max_turn"] if turns[0] > 0 else []
+    return ", ".join(words)

@@ -1,0 +1,343 @@
+"""Waypoints moved by a swarm: a few free points between start and goal, a curve along them, an optimiser (PSO-BAS 4).
+
+How a route becomes a vector decides more than which optimiser moves it. Here it is a few free points in space, control
+points of a cubic B-spline; the swarm begins on the best of some random arcs; and in the end twice as many points on the
+same curve are moved one by one. The same refinement makes any route better, also the exact optimum on the grid.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.optimizers import Result, bas, pso, pso_bas
+from uavlab.optimizers.particle_swarm import SWARM
+from uavlab.planners.ant_colony import ANTS, ant_colony
+from uavlab.planners.curves import PER_SEGMENT, Measure, Task, breaches, task_of
+from uavlab.planners.grid import show
+from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN, checked_limits, price_per_cell
+from uavlab.risk import RiskMap
+from uavlab.route import Route
+
+OPTIMIZERS: dict[str, tuple[Callable[..., Result], dict[str, Any]]] = {
+    "pso_bas": (pso_bas, {"probes": 5, "decay": 0.98}),
+    "pso": (pso, {}),
+    "bas": (bas, {}),
+    "pso_aco": (pso, {}),
+}
+"""Each with settings that suit waypoints."""
+
+WAYPOINTS = 7
+
+ARCS = 200
+"""Random arcs to begin with, of which the best make the first swarm."""
+
+HUMPS, WIDTH, HEIGHT = 4, 0.2, 3.0
+"""Half waves of an arc; how wide they usually are, as a share of the distance; how high [cells]."""
+
+REFINE, CANDIDATES = 0.4, 3
+"""Share of the budget for moving more waypoints one by one; of how many curves."""
+
+REFINE_ANTENNA = 0.1
+"""First length of the antennae in refinement, as a share of the map."""
+
+ANTS_SHARE = 0.25
+"""Of the budget, in "pso_aco"; PSO-BAS only names this hybrid."""
+
+SPACING = 2.0
+"""Between the waypoints of a route that is refined [cells]."""
+
+
+def waypoint_swarm(
+    risk_map: RiskMap,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    *,
+    rng: np.random.Generator | int,
+    budget: int = 4000,
+    optimizer: str = "pso_bas",
+    waypoints: int = WAYPOINTS,
+    encoding: str = "points",
+    curve: str = "spline",
+    arcs: int = ARCS,
+    initial: Route | None = None,
+    refinement: float = REFINE,
+    risk: float = 1.0,
+    length: float = 0.0,
+    threat: float = 0.0,
+    max_turn: float = MAX_TURN,
+    max_pitch: float = MAX_PITCH,
+    min_clearance: float = 0.0,
+    **settings: Any,
+) -> Route:
+    """A route of low cost along a few waypoints that a swarm moves (PSO-BAS section 4).
+
+    A curve that flies where it may not, turns or climbs too much is worse than any that doesn't, the worse the more.
+
+    Parameters
+    ----------
+    risk_map, start, goal, risk, length, threat, max_pitch, min_clearance
+        As for `least_risk`.
+    rng : numpy.random.Generator or int
+        Or a seed for one.
+    budget : int
+        How many curves are measured in all; the ants of "pso_aco" count as well.
+    optimizer : {"pso_bas", "pso", "bas", "pso_aco"}
+        Those of `uavlab.optimizers`; "pso_aco" is PSO with a particle on the best route of an ant colony, which takes
+        a quarter of the budget.
+    waypoints : int
+        Free points K between start and goal, at least 1.
+    encoding : {"points", "planes"}
+        What a waypoint is free to do: three numbers, anywhere on the map; or two, sideways and up on one of K vertical
+        planes across the way.
+    curve : {"spline", "polyline"}
+        Whether waypoints are control points of a B-spline, see `uavlab.spline`, or corners.
+    arcs : int
+        Random arcs to measure first; the swarm begins on the best of them. 0: anywhere on the map.
+    initial : Route, optional
+        One particle begins near this route.
+    refinement : float
+        Share of the budget, from 0 to below 1, for `refine` with twice as many waypoints, from the best three curves.
+    max_turn : float
+        Greatest change of heading [rad], at a corner; on legs shorter than a voxel per length of a voxel, as
+        on the grid of `least_risk`.
+    **settings
+        For the optimiser, such as `swarm=10` or `as_printed=True`.
+
+    Returns
+    -------
+    Route
+        The curve as short straight legs; `cost` as for `least_risk`; `info["control"]`, its control points or corners
+        [m]; `info["evaluations"]`; `info["history"]`, the least cost after each of them, infinite until a curve keeps
+        the limits; `info["iterations"]`, how many had been made at the end of each iteration of the swarm;
+        `info["elapsed"]` [s]. Where none keeps them `reached` is False, and `reason` says what the best does wrong.
+
+    Raises
+    ------
+    ValueError
+        If start or goal can't be flown from or to, the budget doesn't cover arcs, one swarm and refinement, the initial
+        route doesn't lead from start to goal, or an argument is out of its range.
+    """
+    began = time.perf_counter()
+    rng = np.random.default_rng(rng)
+    for name, value, known in (
+        ("optimizer", optimizer, OPTIMIZERS),
+        ("encoding", encoding, ("points", "planes")),
+        ("curve", curve, ("spline", "polyline")),
+    ):
+        if value not in known:
+            raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    for name, count, least in (("waypoints", waypoints, 1), ("arcs", arcs, 0), ("budget", budget, 1)):
+        checks.whole(name, count, least)
+    checks.number("refinement", refinement)
+    if not 0 <= refinement < 1:
+        raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
+    price = price_per_cell(risk_map, risk, length, threat, drift=False)
+    task = task_of(risk_map, start, goal, price, limits, curve == "spline")
+    space = space_of(task, waypoints, encoding)
+    swarm = 1 if optimizer == "bas" else settings.get("swarm", SWARM)
+    ants = max(int(ANTS_SHARE * budget), ANTS) if optimizer == "pso_aco" else 0
+    last = int(refinement * budget)
+    left = budget - ants - arcs - last
+    if left < max(swarm, 4) or 0 < last < 6 * CANDIDATES:
+        raise ValueError(
+            f"budget must leave at least {max(swarm, 4)} evaluations for the swarm, {6 * CANDIDATES} for refinement; "
+            f"of {budget} there go {ants} to ants, {arcs} to arcs, {last} to refinement, {left} are left"
+        )
+    measure = Measure(task)
+    if ants:
+        walked = ant_colony(
+            risk_map, start, goal, rng=rng, budget=ants, risk=risk, length=length, threat=threat,
+            max_turn=max_turn, max_pitch=max_pitch, min_clearance=min_clearance,
+        )  # fmt: skip
+        measure.note(walked.info["history"], walked.info["iterations"])
+        initial = walked if walked.reached else initial
+    first = space.vectors(arcs_between(task, waypoints, arcs, rng))
+    if arcs:
+        first = first[np.argsort(measure(space.control(first)))]
+    if initial is not None:
+        first = np.concatenate([space.vectors(near(task, initial, risk_map, waypoints)[None]), first])
+    if len(first):
+        settings = {"start": first[:swarm], **settings}
+    if optimizer == "pso_bas":
+        settings = {"block": len(space.axes), **settings}
+    search, own = OPTIMIZERS[optimizer]
+    before = measure.made
+    found = search(lambda vectors: measure(space.control(vectors)), space.bounds, left, rng, **{**own, **settings})
+    measure.iterations += (before + found.iterations).tolist()
+    best, per_segment = space.control(found.best[None])[0], PER_SEGMENT
+    if last:
+        per_segment = PER_SEGMENT // 2
+        finer = [task.finer(control) for control in space.control(found.swarm[:CANDIDATES])]
+        each = last // 2 // len(finer)
+        moved = [one_by_one(measure, control, per_segment, each, rng) for control in finer]
+        best = min(moved, key=lambda control: task.costs(control[None], per_segment)[0])
+        best = one_by_one(measure, best, per_segment, last - each * len(finer), rng)
+    route = route_of(task, best, per_segment, risk_map, f"{optimizer} waypoints")
+    info = {
+        **route.info,
+        "evaluations": measure.made,
+        "history": measure.history,
+        "iterations": np.array(measure.iterations),
+        "elapsed": time.perf_counter() - began,
+    }
+    if not route.reached:
+        reason = f"the best of {measure.made} curves from {show(start)} to {show(goal)} {route.reason}"
+        return replace(route, points=np.empty((0, 3)), reason=reason, info=info)
+    return replace(route, info=info)
+
+
+def refine(
+    risk_map: RiskMap,
+    route: Route,
+    *,
+    rng: np.random.Generator | int,
+    budget: int = 4000,
+    risk: float = 1.0,
+    length: float = 0.0,
+    threat: float = 0.0,
+    max_turn: float = MAX_TURN,
+    max_pitch: float = MAX_PITCH,
+    min_clearance: float = 0.0,
+) -> Route:
+    """A better curve near a route: control points of a B-spline, two voxels apart, moved one by one while it gains.
+
+    Not bound to the grid, it usually costs less than the exact optimum there.
+
+    Parameters
+    ----------
+    risk_map, risk, length, threat, max_turn, max_pitch, min_clearance
+        As for `waypoint_swarm`.
+    route : Route
+        From the centre of a voxel to that of another; of a planner.
+    rng : numpy.random.Generator or int
+        Or a seed for one.
+    budget : int
+        How many curves are measured, at least 4.
+
+    Returns
+    -------
+    Route
+        As of `waypoint_swarm`; the route itself, with its cost, where no curve that was found is better and keeps the
+        limits.
+
+    Raises
+    ------
+    ValueError
+        If the route doesn't arrive, its ends can't be flown from or to, or an argument is out of its range.
+    """
+    began = time.perf_counter()
+    rng = np.random.default_rng(rng)
+    checks.instance("route", route, Route)
+    if not route.reached or len(route.points) < 2:
+        raise ValueError(f"route must lead from a start to a goal, it doesn't: {route.reason or 'no leg'}")
+    checks.whole("budget", budget, least=4)
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
+    price = price_per_cell(risk_map, risk, length, threat, drift=False)
+    task = task_of(risk_map, route.points[0], route.points[-1], price, limits, True)
+    measure = Measure(task)
+    count = max(int(route.length / risk_map.city.cell / SPACING), 2) + 1
+    control = one_by_one(measure, near(task, route, risk_map, count - 2), PER_SEGMENT // 2, budget, rng)
+    better = route_of(task, control, PER_SEGMENT // 2, risk_map, f"{route.planner} + refined")
+    cost = route.integral(risk_map.city, task.terrain.price) / risk_map.city.cell
+    info = {"evaluations": budget, "history": np.minimum(measure.history, cost), "elapsed": time.perf_counter() - began}
+    if better.cost < cost:
+        return replace(better, info={**better.info, **info})
+    return replace(route, cost=cost, info={**route.info, **info})
+
+
+class Space(NamedTuple):
+    """How a vector stands for K points: each is an anchor plus its block of numbers along the axes [cells]."""
+
+    ends: np.ndarray  # (2, 3): first and last point of the curve
+    anchors: np.ndarray  # (K, 3)
+    axes: np.ndarray  # (2 or 3, 3), of length 1
+    bounds: np.ndarray  # (K · block, 2)
+
+    def control(self, vectors: np.ndarray) -> np.ndarray:
+        """Points with both ends (N, K + 2, 3) from vectors (N, D)."""
+        inner = self.anchors + vectors.reshape(len(vectors), len(self.anchors), -1) @ self.axes
+        first, last = (np.broadcast_to(end, (len(vectors), 1, 3)) for end in self.ends)
+        return np.concatenate([first, inner, last], axis=1)
+
+    def vectors(self, control: np.ndarray) -> np.ndarray:
+        """Vectors (N, D) from points with both ends, as near as the bounds allow."""
+        inner = (control[:, 1:-1] - self.anchors) @ self.axes.T
+        return np.clip(inner.reshape(len(control), -1), *self.bounds.T)
+
+
+def space_of(task: Task, waypoints: int, encoding: str) -> Space:
+    """Points anywhere on the map, or on vertical planes that cut the way from start to goal evenly."""
+    ends = np.stack([task.source, task.target])
+    size = np.array(task.terrain.closed.shape, float) - 1e-9  # within the last voxel
+    if encoding == "points":
+        return Space(ends, np.zeros((waypoints, 3)), np.eye(3), np.tile(np.stack([0 * size, size], 1), (waypoints, 1)))
+    _, side = directions(task)
+    anchors = task.source + np.linspace(0, 1, waypoints + 2)[1:-1, None] * (task.target - task.source)
+    anchors[:, 2] = 0.0
+    bounds = np.zeros((waypoints, 2, 2))
+    walls = np.sort([(wall - anchors[:, side != 0]) / side[side != 0] for wall in (0.0, size[side != 0])], axis=0)
+    bounds[:, 0, 0], bounds[:, 0, 1] = walls[0].max(axis=1), walls[1].min(axis=1)
+    bounds[:, 1, 1] = size[2]
+    return Space(ends, anchors, np.stack([side, (0.0, 0.0, 1.0)]), bounds.reshape(-1, 2))
+
+
+def directions(task: Task) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors of the way from start to goal on the map, and across it; east if the goal is straight above."""
+    way = (task.target - task.source) * (1.0, 1.0, 0.0)
+    ahead = way / np.linalg.norm(way) if way.any() else np.array([1.0, 0.0, 0.0])
+    return ahead, np.array([-ahead[1], ahead[0], 0.0])
+
+
+def arcs_between(task: Task, waypoints: int, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Random curves (N, K + 2, 3): sums of half waves sideways, the more of them the narrower; and one upwards."""
+    along = np.linspace(0, 1, waypoints + 2)
+    straight = task.source + along[:, None] * (task.target - task.source)
+    distance = np.linalg.norm(task.target - task.source)
+    order = np.arange(1, HUMPS + 1)
+    waves = np.sin(np.pi * order[:, None] * along)
+    sideways = (rng.standard_normal((count, HUMPS)) * WIDTH * distance / order) @ waves
+    upwards = np.abs(rng.standard_normal((count, 1))) * HEIGHT @ waves[:1]
+    _, side = directions(task)
+    curves = straight + sideways[..., None] * side + upwards[..., None] * (0.0, 0.0, 1.0)
+    return np.clip(curves, 0.0, np.array(task.terrain.closed.shape) - 1e-9)
+
+
+def near(task: Task, route: Route, risk_map: RiskMap, waypoints: int) -> np.ndarray:
+    """Points with both ends (K + 2, 3) of a curve near a route, from the task's start to its goal."""
+    checks.instance("initial", route, Route)
+    points = (route.points - risk_map.city.origin) / risk_map.city.cell
+    if (
+        len(points) < 2
+        or max(np.abs(points[0] - task.source).max(), np.abs(points[-1] - task.target).max()) > 0.5 + 1e-9
+    ):
+        raise ValueError(f"initial must lead from start to goal, within a voxel of both, got {route!r}")
+    control = task.nearest(points, waypoints + 2)
+    control[0], control[-1] = task.source, task.target
+    return control
+
+
+def one_by_one(
+    measure: Measure, control: np.ndarray, per_segment: int, budget: int, rng: np.random.Generator
+) -> np.ndarray:
+    """Points with both ends (K + 2, 3), the inner ones moved one at a time by a greedy beetle."""
+    space = space_of(measure.task, len(control) - 2, "points")
+    found = bas(
+        lambda vectors: measure(space.control(vectors), per_segment), space.bounds, budget, rng,
+        start=space.vectors(control[None]), greedy=True, decay=None, block=3, antenna=REFINE_ANTENNA,
+    )  # fmt: skip
+    return space.control(found.best[None])[0]
+
+
+def route_of(task: Task, control: np.ndarray, per_segment: int, risk_map: RiskMap, planner: str) -> Route:
+    """The curve as a route; not reached if it breaks a limit."""
+    city = risk_map.city
+    line = task.lines(control[None], per_segment)[0]
+    cost, broken = float(task.costs(control[None], per_segment)[0]), breaches(task, line, city.cell)
+    info = {"control": city.origin + control * city.cell}
+    return Route(city.origin + line * city.cell, planner, not broken, broken, np.inf if broken else cost, info)
