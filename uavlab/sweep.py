@@ -5,6 +5,7 @@ results don't depend on it, because each case brings its own seed.
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from numbers import Integral
 from typing import Any
 
 import joblib
@@ -45,11 +46,13 @@ def sweep(
     Exception
         What the function raises; a note says in which case.
     """
-    if jobs is not None and (not isinstance(jobs, int) or jobs == 0):
+    if jobs is not None and (not isinstance(jobs, Integral) or jobs == 0):
         raise ValueError(f"jobs must be a number of processes, or −1 for one per core, got {jobs!r}")
     cases = list(cases)
     calls = (joblib.delayed(called)(function, dict(case)) for case in cases)
-    results = joblib.Parallel(n_jobs=jobs, return_as="generator")(calls)
+    backend, _ = joblib.parallel.get_active_backend()
+    ordered = "generator" if backend.supports_return_generator else "list"  # Ray's, for one, gives all at the end
+    results = joblib.Parallel(n_jobs=jobs, return_as=ordered)(calls)
     return list(tqdm(results, total=len(cases), unit=unit, disable=not progress))
 
 

@@ -63,7 +63,7 @@ class Counter:
         asked = points[: self.left]
         if len(asked) == 0:
             return values
-        given = np.array(self.f(asked), dtype=float)
+        given = np.array(self.f(asked.copy()), dtype=float)  # f may keep its points, or change them
         if given.shape != (len(asked),):
             raise ValueError(
                 f"f must return one value per point: for {asked.shape} shape ({len(asked)},), got {given.shape}; "

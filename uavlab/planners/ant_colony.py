@@ -48,13 +48,13 @@ class Habits(NamedTuple):
     evaporation: float
     deposit: float
     least: float
-    most: float
     first: float
+    most: float
 
 
-OURS = Habits(alpha=1.0, beta=12.0, gamma=2.0, evaporation=0.1, deposit=1.5, least=0.05, most=15.0, first=15.0)
+OURS = Habits(alpha=1.0, beta=12.0, gamma=2.0, evaporation=0.1, deposit=1.5, least=0.05, first=15.0, most=15.0)
 
-PRINTED = Habits(alpha=0.5, beta=80.0, gamma=0.0, evaporation=0.8, deposit=100.0, least=0.0, most=15.0, first=15.0)
+PRINTED = Habits(alpha=0.5, beta=80.0, gamma=0.0, evaporation=0.8, deposit=100.0, least=0.0, first=15.0, most=15.0)
 """α, β, ρ, Q, τ_min and τ_max (RISK-ACO Table 3). What τ is at first it doesn't say."""
 
 
@@ -147,6 +147,8 @@ def ant_colony(
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
     price = price_per_cell(risk_map, risk, length, threat, drift)
     query = query_of(risk_map, price, *flyable_endpoints(risk_map, start, goal, min_clearance), limits)
+    if as_printed:
+        habits = habits._replace(deposit=habits.deposit / risk_map.city.cell)  # Q/L: L in metres, ants count cells
     colony = Colony(query, habits, height_guided, as_printed, ants, rng)
     half = budget // (splits + 1) // 2
     ends, nothing = np.array([query.source, query.target]), np.empty(0, np.int64)
@@ -155,8 +157,13 @@ def ant_colony(
     history = [np.minimum.accumulate(found.costs)]
     for _ in range(splits):
         most = max(range(len(pieces)), key=lambda piece: len(pieces[piece]))
-        if len(pieces[most]) < 3:
-            break
+        if len(pieces[most]) < 3:  # no route yet, or none that can be split: one more search for the whole
+            found = forage(colony, ends, nothing, nothing, 2 * half)
+            history.append(np.minimum(np.minimum.accumulate(found.costs), total))
+            if found.cost < total:
+                pieces, total = [found.nodes], found.cost
+            searches.append(found)
+            continue
         middle = len(pieces[most]) // 2
         pieces[most : most + 1] = [pieces[most][: middle + 1], pieces[most][middle:]]
         for at in (most, most + 1):

@@ -123,12 +123,14 @@ class Comparison:
         return float(won.mean()), *over_maps(np.mean, won)
 
     def converged(self, within: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
-        """When each run came to within a share of its final cost: evaluations and iterations, (P, M, S) each."""
+        """When each run came to within a share of its final cost: evaluations and iterations, (P, M, S) each.
+
+        A run that didn't arrive never did: all its evaluations. What comes after the last iteration counts as one more.
+        """
         checks.number("within", within)
         checks.share("within", within)
         final = 1 + self.histories[..., -1:]
-        with np.errstate(invalid="ignore"):
-            near = 1 + self.histories <= (1 + within) * final
+        near = (1 + self.histories <= (1 + within) * final) & np.isfinite(final)
         evaluations = np.where(near.any(axis=-1), near.argmax(axis=-1) + 1, self.histories.shape[-1])
         iterations = [np.searchsorted(ends, made) + 1 for ends, made in zip(self.iterations, evaluations, strict=True)]
         return evaluations, np.array(iterations)
@@ -203,7 +205,8 @@ def compare_planners(
                 f"planners must use the budget of {budget}, {route.planner} used {route.info['evaluations']}"
             )
     least = np.array([route.cost for route in exact])[None, :, None]
-    gaps = np.array([route.cost for route in routes]).reshape(shape) / least - 1
+    costs = np.array([route.cost if route.reached else np.inf for route in routes])
+    gaps = costs.reshape(shape) / least - 1
     histories = np.array([route.info["history"] for route in routes]).reshape(*shape, budget) / least[..., None] - 1
     elapsed = np.array([route.info["elapsed"] for route in routes]).reshape(shape)
     firsts = routes[:: len(maps) * len(seeds)]

@@ -23,6 +23,9 @@ PER_SEGMENT = 8
 SLACK = 1e-9
 """Rounding that a limit on an angle allows [rad]."""
 
+LONGEST = 1000
+"""No curve is as long as so many times the edges of the map; what that costs, one that breaks a limit costs more."""
+
 
 class Terrain(NamedTuple):
     """A map for compiled code."""
@@ -40,7 +43,8 @@ class Task(NamedTuple):
     source: np.ndarray
     target: np.ndarray
     spline: bool  # curves are B-splines with these control points, or else lines with these corners
-    unflyable: float  # what a curve costs more that breaks a limit
+    breach: float  # what a cell flown where it may not, or a radian too much, costs more
+    unflyable: float  # what any curve that breaks a limit costs more
 
     def lines(self, control: np.ndarray, per_segment: int) -> np.ndarray:
         """Curves as straight legs (N, P, 3), from control points (N, K + 2, 3)."""
@@ -50,8 +54,7 @@ class Task(NamedTuple):
         """Costs (N,) of curves (N, K + 2, 3); whichever breaks a limit costs more than any that doesn't."""
         costs, closed, angles = costs_of(self.terrain, self.lines(control, per_segment))
         broken = closed + angles
-        way = np.linalg.norm(self.target - self.source)
-        return costs + np.where(broken > 0, self.unflyable * (1 + broken / way), 0.0)
+        return costs + np.where(broken > 0, self.unflyable + self.breach * broken, 0.0)
 
     def finer(self, control: np.ndarray) -> np.ndarray:
         """Control points (2 K + 3, 3) of the same curve as (K + 2, 3), with one more between each two."""
@@ -77,16 +80,17 @@ def task_of(
     blocked = query_of(risk_map, price, *codes, limits).blocked
     price = price.reshape(risk_map.city.shape)
     source, target = risk_map.city.index_of(np.array(codes)) + 0.5
-    way = np.linalg.norm(target - source)
     terrain = Terrain(price, blocked, limits.max_turn, limits.max_pitch)
-    return Task(terrain, source, target, spline, float(10 * way * price[~blocked].max()))
+    highest = float(price[~blocked].max())
+    return Task(terrain, source, target, spline, 10 * highest, LONGEST * sum(price.shape) * highest)
 
 
 class Measure:
-    """Measures curves, counts them, and notes the least cost."""
+    """Measures curves, counts them, and notes the best and the least cost."""
 
     def __init__(self, task: Task) -> None:
         self.task = task
+        self.best, self.per_segment, self.least = np.empty((0, 3)), PER_SEGMENT, np.inf
         self.histories: list[np.ndarray] = []
         self.iterations: list[int] = []
         self.made = 0
@@ -94,6 +98,8 @@ class Measure:
     def __call__(self, control: np.ndarray, per_segment: int = PER_SEGMENT) -> np.ndarray:
         """Costs (N,) of curves (N, K + 2, 3), see `Task.costs`."""
         values = self.task.costs(control, per_segment)
+        if values.min() < self.least:
+            self.least, self.best, self.per_segment = values.min(), control[values.argmin()], per_segment
         self.note(np.where(values >= self.task.unflyable, np.inf, values))
         return values
 
@@ -145,18 +151,21 @@ def along(terrain, start, end):
 def excess(terrain, line, p):
     """How far leg p climbs too much and turns too much against the leg before it [rad].
 
-    Legs shorter than a voxel may turn only in proportion: `max_turn` is per corner and per length of a voxel.
+    Legs shorter than a voxel may turn only in proportion: `max_turn` is per corner and per length of a voxel. A
+    vertical leg has no heading, and keeps the one of the leg before it.
     """
     dx, dy, dz = line[p + 1] - line[p]
     level = math.hypot(dx, dy)
     over = max(0.0, abs(math.atan2(dz, level)) - terrain.max_pitch - SLACK)
-    if p > 0:
-        ex, ey, ez = line[p] - line[p - 1]
+    if level <= SLACK:
+        return over
+    for before in range(p - 1, -1, -1):
+        ex, ey, ez = line[before + 1] - line[before]
         level_before = math.hypot(ex, ey)
-        if level > SLACK and level_before > SLACK:
+        if level_before > SLACK:
             turn = abs(math.atan2(ex * dy - ey * dx, ex * dx + ey * dy))
             mean = 0.5 * (math.hypot(level, dz) + math.hypot(level_before, ez))
-            over += max(0.0, turn - terrain.max_turn * min(1.0, mean) - SLACK)
+            return over + max(0.0, turn - terrain.max_turn * min(1.0, mean) - SLACK)
     return over
 
 

@@ -36,13 +36,13 @@ WAYPOINTS = 7
 ARCS = 200
 """Random arcs to begin with, of which the best make the first swarm."""
 
-HUMPS, WIDTH, HEIGHT = 4, 0.2, 3.0
+HUMPS, WIDTH, HEIGHT = 5, 0.2, 3.0
 """Half waves of an arc; how wide they usually are, as a share of the distance; how high [cells]."""
 
 REFINE, CANDIDATES = 0.4, 3
 """Share of the budget for moving more waypoints one by one; of how many curves."""
 
-REFINE_ANTENNA = 0.1
+REFINE_ANTENNA = 0.05
 """First length of the antennae in refinement, as a share of the map."""
 
 ANTS_SHARE = 0.25
@@ -111,10 +111,11 @@ def waypoint_swarm(
     Returns
     -------
     Route
-        The curve as short straight legs; `cost` as for `least_risk`; `info["control"]`, its control points or corners
-        [m]; `info["evaluations"]`; `info["history"]`, the least cost after each of them, infinite until a curve keeps
-        the limits; `info["iterations"]`, how many had been made at the end of each iteration of the swarm;
-        `info["elapsed"]` [s]. Where none keeps them `reached` is False, and `reason` says what the best does wrong.
+        The curve as short straight legs, in "pso_aco" the ants' route if no curve is better; `cost` as for
+        `least_risk`; `info["control"]`, its control points or corners [m]; `info["evaluations"]`; `info["history"]`,
+        the least cost after each of them, infinite until a curve keeps the limits; `info["iterations"]`, how many had
+        been made at the end of each iteration of the swarm; `info["elapsed"]` [s]. Where none keeps the limits
+        `reached` is False, and `reason` says what the best does wrong.
 
     Raises
     ------
@@ -170,15 +171,17 @@ def waypoint_swarm(
     before = measure.made
     found = search(lambda vectors: measure(space.control(vectors)), space.bounds, left, rng, **{**own, **settings})
     measure.iterations += (before + found.iterations).tolist()
-    best, per_segment = space.control(found.best[None])[0], PER_SEGMENT
     if last:
         per_segment = PER_SEGMENT // 2
-        finer = [task.finer(control) for control in space.control(found.swarm[:CANDIDATES])]
+        ends = np.concatenate([found.best[None], found.swarm[1:CANDIDATES]])  # a lone beetle may have left its best
+        finer = [task.finer(control) for control in space.control(ends)]
         each = last // 2 // len(finer)
         moved = [one_by_one(measure, control, per_segment, each, rng) for control in finer]
         best = min(moved, key=lambda control: task.costs(control[None], per_segment)[0])
-        best = one_by_one(measure, best, per_segment, last - each * len(finer), rng)
-    route = route_of(task, best, per_segment, risk_map, f"{optimizer} waypoints")
+        one_by_one(measure, best, per_segment, last - each * len(finer), rng)
+    route = route_of(task, measure.best, measure.per_segment, risk_map, f"{optimizer} waypoints")
+    if ants and walked.cost < route.cost:
+        route = replace(walked, planner=route.planner, info={"control": walked.points})
     info = {
         **route.info,
         "evaluations": measure.made,
@@ -268,7 +271,7 @@ class Space(NamedTuple):
     def vectors(self, control: np.ndarray) -> np.ndarray:
         """Vectors (N, D) from points with both ends, as near as the bounds allow."""
         inner = (control[:, 1:-1] - self.anchors) @ self.axes.T
-        return np.clip(inner.reshape(len(control), -1), *self.bounds.T)
+        return np.clip(inner.reshape(len(control), len(self.bounds)), *self.bounds.T)
 
 
 def space_of(task: Task, waypoints: int, encoding: str) -> Space:
