@@ -146,7 +146,7 @@ def over_maps(statistic: Callable[..., Any], values: np.ndarray) -> tuple[float,
 
 def compare_planners(
     planners: Mapping[str, Planner],
-    maps: Sequence[RiskMap],
+    maps: RiskMap | Sequence[RiskMap],
     *,
     seeds: Iterable[int] = range(10),
     budget: int = 4000,
@@ -162,7 +162,7 @@ def compare_planners(
     planners : mapping of name to function
         Called as planner(risk_map, start, goal, budget=…, rng=…), such as `ant_colony` or, with settings,
         `functools.partial(waypoint_swarm, optimizer="pso")`. They minimise the risk, as `least_risk` by default.
-    maps : sequence of RiskMap
+    maps : RiskMap, or several
     seeds : iterable of int
         One run of each planner on each map with each.
     budget : int
@@ -182,8 +182,8 @@ def compare_planners(
         If there are no planners, maps or seeds, a seed is repeated, a map has no route at all, or a planner takes
         another number of evaluations than the budget.
     """
-    seeds = list(seeds)
-    if not planners or not len(maps) or not seeds:
+    seeds, maps = list(seeds), [maps] if isinstance(maps, RiskMap) else list(maps)
+    if not planners or not maps or not seeds:
         raise ValueError("planners, maps and seeds must each have at least one")
     if len(set(seeds)) < len(seeds):  # the same run twice would narrow an interval
         raise ValueError(f"seeds must all be different, got {seeds}")
