@@ -102,9 +102,11 @@ def flown(x, velocity, best, leader, low, high, settings, used, rng):
     r1, r2 = rng.random((2, *x.shape))
     inertia = first + (last - first) * used
     velocity = inertia * velocity + c1 * r1 * (best - x) + c2 * r2 * (leader - x)
-    velocity = np.clip(velocity, -v_max * (high - low), v_max * (high - low))
-    moved = np.clip(x + velocity, low, high)
-    return moved, np.where((moved > low) & (moved < high), velocity, 0.0)
+    longest = v_max * (high - low)
+    velocity = np.minimum(np.maximum(velocity, -longest), longest)  # numpy.clip takes twice as long
+    moved = np.minimum(np.maximum(x + velocity, low), high)
+    velocity *= (moved > low) & (moved < high)
+    return moved, velocity
 
 
 def swarm_settings(inertia, c1, c2, v_max, as_printed):

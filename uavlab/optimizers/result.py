@@ -69,13 +69,16 @@ class Counter:
                 f"f must return one value per point: for {asked.shape} shape ({len(asked)},), got {given.shape}; "
                 "a function of one point: lambda points: np.array([f(point) for point in points])"
             )
-        self.not_a_number += int(np.isnan(given).sum())
-        given[np.isnan(given)] = np.inf
-        self.histories.append(np.minimum(np.minimum.accumulate(given), self.value))
+        nan = np.isnan(given)
+        if nan.any():
+            self.not_a_number += int(nan.sum())
+            given[nan] = np.inf
+        self.histories.append(given)
         self.made += len(asked)
         self.left -= len(asked)
-        if given.min() < self.value:
-            self.value, self.best = float(given.min()), asked[given.argmin()].copy()
+        least = given.argmin()
+        if given[least] < self.value:
+            self.value, self.best = float(given[least]), asked[least].copy()
         values[: len(asked)] = given
         return values
 
@@ -84,7 +87,7 @@ class Counter:
 
     def result(self, swarm: np.ndarray, values: np.ndarray) -> Result:
         """What was found; the swarm (N, D) with its values (N,) is put in order."""
-        history, ends = np.concatenate(self.histories), np.array(self.iterations)
+        history, ends = np.minimum.accumulate(np.concatenate(self.histories)), np.array(self.iterations)
         return Result(self.best, self.value, history, ends, self.not_a_number, swarm[np.argsort(values)])
 
 
@@ -132,5 +135,6 @@ def checked_budget(budget: int, least: int, what: str) -> int:
 def keep_better(best: np.ndarray, value: np.ndarray, found: np.ndarray, gained: np.ndarray) -> np.ndarray:
     """Replace in place what is known, (N, D) and (N,), where something better was found; and where that was."""
     better = gained < value
-    best[better], value[better] = found[better], gained[better]
+    np.copyto(best, found, where=better[:, None])
+    np.copyto(value, gained, where=better)
     return better
