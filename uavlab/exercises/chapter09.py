@@ -1,0 +1,320 @@
+"""Exercises of chapter 9, ant colony: the roulette in logarithms, the pheromone's update, and when τ_max binds.
+
+A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
+by how they are written.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab.exercises import NOTHING
+
+Odds = Callable[[np.ndarray, np.ndarray, float, float], npt.ArrayLike]
+Update = Callable[[np.ndarray, list[list[int]], list[float], float, float, float, float], npt.ArrayLike]
+Until = Callable[[float, int, float, float, float, float], int | None]
+
+
+def exercise_1(odds: Odds) -> str:
+    """09.1: probabilities of an ant's next step, also where floats end."""
+    rng = np.random.default_rng(91)
+    usual = [
+        (rng.uniform(0.1, 15, n), 1 / rng.uniform(2, 30, n), rng.uniform(0.5, 4), rng.uniform(0.5, 4))
+        for n in (2, 3, 5, 8, 17)
+    ]
+    answers = [odds(tau.copy(), eta.copy(), alpha, beta) for tau, eta, alpha, beta in usual]
+    if any(answer is None for answer in answers):
+        return NOTHING
+    if any(np.shape(answer) != case[0].shape for answer, case in zip(answers, usual, strict=True)):
+        return f"For two neighbours the answer is two probabilities; yours has the shape {np.shape(answers[0])}."
+
+    def agrees(formula: Callable[..., np.ndarray]) -> bool:
+        return all(np.allclose(a, formula(*case), rtol=1e-6) for a, case in zip(answers, usual, strict=True))
+
+    if not agrees(right_odds):
+        for formula, hint in ODDS_MISTAKES:
+            if agrees(formula):
+                return hint
+        sums = [float(np.sum(answer)) for answer in answers]
+        if not np.allclose(sums, 1.0):
+            return f"The ant goes somewhere for certain: the probabilities should add up to 1, yours to {sums[0]:.4g}."
+        return (
+            "They add up to 1, but the shares are wrong. By hand: two neighbours, τ = (1, 4), η = (1, 1), α = 0.5, "
+            "any β. How many times likelier is the second?"
+        )
+    far = 1 / np.array([30.0, 31.0, 29.0])
+    for name, case in {
+        "β = 80, 150 m from the goal, after 440 generations": (
+            np.full(3, 15 * 0.2**440), np.array([1 / 150, 1 / 155, 1 / 145]), 0.5, 80.0
+        ),
+        "β = 500, 30 m from the goal": (np.full(3, 15.0), far, 0.5, 500.0),
+        "η = 30 and β = 500": (np.full(3, 15.0), 1000 * far, 0.5, 500.0),
+    }.items():  # fmt: skip
+        with np.errstate(all="ignore"):
+            answer = np.asarray(odds(*case), dtype=float)
+        if not np.isfinite(answer).all():
+            return f"Right for usual numbers. For {name} you get {answer}: which power left the range of floats?"
+        if not np.allclose(answer, right_odds(*case), atol=1e-9):
+            return (
+                f"Right for usual numbers. For {name} you get {answer}, which should be {right_odds(*case).round(4)}. "
+                "Before taking exp, subtract something that makes the largest exponent 0."
+            )
+    with np.errstate(all="ignore"):
+        gone = np.asarray(odds(np.array([0.0, 3.0, 3.0]), np.ones(3), 1.0, 2.0), dtype=float)
+    if not np.allclose(gone, [0.0, 0.5, 0.5], atol=1e-9):
+        return f"Where the scent of one of three neighbours is 0, nobody goes there; you get {gone}."
+    return ""
+
+
+def right_odds(tau: np.ndarray, eta: np.ndarray, alpha: float, beta: float) -> np.ndarray:
+    with np.errstate(divide="ignore"):
+        logs = alpha * np.log(tau) + beta * np.log(eta)
+    weight = np.exp(logs - logs.max())
+    return weight / weight.sum()
+
+
+def shares(weight: np.ndarray) -> np.ndarray:
+    return weight / weight.sum()
+
+
+ODDS_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
+    (lambda t, e, a, b: t**a * e**b, "Those are weights. A probability is a share of their sum."),
+    (
+        lambda t, e, a, b: np.exp(a * np.log(t) + b * np.log(e) - (a * np.log(t) + b * np.log(e)).max()),
+        "The largest of yours is always 1. What is left to do, so that they add up to 1?",
+    ),
+    (lambda t, e, a, b: shares(t * e), "Your answer doesn't depend on α and β."),
+    (lambda t, e, a, b: shares(t**b * e**a), "α belongs to the pheromone, β to the visibility: you have swapped them."),
+    (lambda t, e, a, b: shares(e**b), "The pheromone is missing: your ants smell nothing."),
+    (lambda t, e, a, b: shares(t**a), "The visibility is missing: your ants don't know where the goal is."),
+    (
+        lambda t, e, a, b: shares(a * t + b * e),
+        "You add the two. A product says *and*: a neighbour without scent isn't chosen, however near it is.",
+    ),
+    (lambda t, e, a, b: shares(t**a + e**b), "You add the two powers. Eq. 2 multiplies them."),
+    (
+        lambda t, e, a, b: shares(np.abs(a * np.log(t) + b * np.log(e))),
+        "You share out the logarithms themselves. They only carry the weights; what takes a logarithm back?",
+    ),
+    (
+        lambda t, e, a, b: shares(a * np.log(t) + b * np.log(e)),
+        "You share out the logarithms themselves. They only carry the weights; what takes a logarithm back?",
+    ),
+    (
+        lambda t, e, a, b: shares(t**a * e**-b),
+        "Your ants run away from the goal. η is already one over the distance.",
+    ),
+]
+
+
+def exercise_2(update: Update) -> str:
+    """09.2: the pheromone after a generation, with evaporation, deposits and limits."""
+    case = (np.array([10.0, 10.0, 10.0, 10.0]), [[0, 1], [0, 2]], [20.0, 50.0], 0.8, 100.0, 0.0, 15.0)
+    answers = [given(update, one) for one in (case, *UPDATES)]
+    if any(answer is None for answer in answers):
+        return NOTHING
+    wanted = updated(*case)
+    if np.shape(answers[0]) != wanted.shape:
+        return f"There are four nodes in the example, your answer has the shape {np.shape(answers[0])}."
+    kept = np.ones(3)
+    update(kept, [[0]], [10.0], 0.5, 1.0, 0.0, 5.0)
+
+    def agrees(rule: Callable[..., np.ndarray]) -> bool:
+        return all(np.allclose(a, rule(*one)) for a, one in zip(answers, (case, *UPDATES), strict=True))
+
+    if agrees(updated):
+        if not np.array_equal(kept, np.ones(3)):
+            return "The numbers are right, but you change the array that you were given. Work on a copy of it."
+        return ""
+    for rule, hint in UPDATE_MISTAKES:
+        if agrees(rule):
+            return hint
+    return (
+        f"Four nodes with τ = 10, two ants over nodes (0, 1) and (0, 2), of 20 and 50 m, ρ = 0.8, Q = 100, no limits "
+        f"that bind: you get {np.round(np.asarray(answers[0], dtype=float), 3)}. Node 3 was walked by nobody: what is "
+        "left of its scent? And what comes on top at node 0?"
+    )
+
+
+def given(update: Update, case: tuple) -> npt.ArrayLike:
+    """The answer to a case, on a copy of its pheromone."""
+    tau, ways, *rest = case
+    return update(tau.copy(), [list(way) for way in ways], *rest)
+
+
+def updated(
+    tau: np.ndarray,
+    ways: Sequence[Sequence[int]],
+    lengths: Sequence[float],
+    evaporation: float,
+    deposit: float,
+    least: float,
+    most: float,
+    *,
+    kept: float | None = None,
+    unit: Callable[[float, float], float] = lambda deposit, length: deposit / length,
+    each: bool = True,
+    fades_after: bool = False,
+    only_walked: bool = False,
+    limits: str = "after",
+) -> np.ndarray:
+    """Pheromone after a generation, by rules that may be wrong."""
+    kept = 1 - evaporation if kept is None else kept
+    laid = np.zeros_like(tau)
+    for way, length in zip(ways, lengths, strict=True):
+        laid[list(way)] = laid[list(way)] * each + unit(deposit, length)
+    walked = laid > 0
+    faded = np.where(walked | (not only_walked), kept * tau, tau)
+    after = kept * (tau + laid) if fades_after else faded + laid
+    low = least if limits in ("after", "least") else -np.inf
+    return np.clip(after, low, most if limits in ("after", "most") else np.inf)
+
+
+def drawn_updates() -> list[tuple]:
+    """Cases in which both limits bind somewhere, and some nodes are walked by several ants; and one with little Q."""
+    rng = np.random.default_rng(92)
+    cases = []
+    for evaporation, deposit in ((0.3, 100.0), (0.8, 100.0), (0.1, 40.0), (0.6, 150.0), (0.4, 0.05)):
+        ways = [sorted(rng.choice(12, 5, replace=False).tolist()) for _ in range(6)]
+        tau = np.concatenate([rng.uniform(0.05, 15.0, 12), [0.06, 0.07, 12.0, 3.0]])
+        cases.append((tau, ways, rng.uniform(20, 60, 6).tolist(), evaporation, deposit, 0.05, 15.0))
+    return cases
+
+
+UPDATES = drawn_updates()
+
+UPDATE_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
+    (
+        lambda *case: updated(*case, kept=case[3]),
+        "You keep the share ρ and let the rest evaporate. ρ is what goes.",
+    ),
+    (
+        lambda *case: updated(*case, kept=1.0),
+        "Nothing evaporates: then the first ants are never forgotten, and every scent ends at τ_max.",
+    ),
+    (
+        lambda *case: updated(*case, only_walked=True),
+        "You let only the nodes evaporate that were walked. The others must fade too, or nothing is ever forgotten.",
+    ),
+    (
+        lambda *case: updated(*case, fades_after=True),
+        "You let the fresh scent evaporate as well. In Eq. 4 it comes on top of what is left of the old.",
+    ),
+    (
+        lambda *case: updated(*case, unit=lambda deposit, length: deposit),
+        "Every ant lays Q, however long its way: nothing tells short ways from long ones.",
+    ),
+    (
+        lambda *case: updated(*case, unit=lambda deposit, length: deposit * length),
+        "Your long ways smell stronger than the short ones.",
+    ),
+    (
+        lambda *case: updated(*case, each=False),
+        "Where several ants walked, you count one of them. The sum in Eq. 4 goes over all ants that passed.",
+    ),
+    (
+        lambda *case: updated(*case, limits="none"),
+        "Evaporation and deposits are right. Where are the limits τ_min and τ_max?",
+    ),
+    (lambda *case: updated(*case, limits="most"), "The upper limit is right. What about the lower one?"),
+    (
+        lambda *case: updated(*case, limits="least"),
+        "The lower limit is right. Above τ_max there is scent left: is the upper limit kept, and after the deposits?",
+    ),
+]
+
+
+def exercise_3(until: Until) -> str:
+    """09.3: the generation in which the scent of the busiest node reaches τ_max, or None."""
+    printed, forgetful, first = (9.0, 10, 100.0, 150.0, 0.8, 15.0), (5.0, 10, 100.0, 150.0, 0.5, 15.0), REACHED[0]
+    answers = [until(*case) for case in REACHED]
+    if all(answer is None for answer in answers):
+        return (
+            f"You always return None. With ρ = {first[4]:g} and 10 ants on {first[3]:g} m each generation brings "
+            f"{first[1] * first[2] / first[3]:.2f}: where does that come to rest?"
+        )
+    if any(answer is not None and np.ndim(answer) != 0 for answer in answers):
+        return "The answer is one whole number of generations, or None."
+
+    def agrees(rule: Callable[..., int | None]) -> bool:
+        wanted = [rule(*case) for case in REACHED]
+        return all(
+            (a is None and w is None) or (a is not None and w is not None and float(a) == w)
+            for a, w in zip(answers, wanted, strict=True)
+        )
+
+    if not agrees(capped):
+        for rule, hint in CAP_MISTAKES:
+            if agrees(rule):
+                return hint
+        number = next(n for n, (a, c) in enumerate(zip(answers, REACHED, strict=True)) if a != capped(*c))
+        start, ants, deposit, length, evaporation, most = REACHED[number]
+        return (
+            f"τ = {start:g} at first, {ants} ants on {length:g} m, Q = {deposit:g}, ρ = {evaporation:g}, τ_max = "
+            f"{most:g}: you say {answers[number]}. Write down the scent after generations 1, 2 and 3."
+        )
+    for case in (printed, forgetful):
+        answer = until(*case)
+        if answer is not None:
+            rest = case[1] * case[2] / (case[4] * case[3])
+            return (
+                f"Right where τ_max is reached. But with ρ = {case[4]:g} the scent comes to rest at {rest:.2f} and "
+                f"never reaches {case[5]:g}; you say {answer}."
+            )
+    if until(15.0, 10, 100.0, 150.0, 0.8, 15.0) != 0:
+        return "Where the scent is at τ_max from the beginning, the answer is 0 generations."
+    return ""
+
+
+def capped(
+    first: float,
+    ants: int,
+    deposit: float,
+    length: float,
+    evaporation: float,
+    most: float,
+    *,
+    gain: Callable[[int, float, float], float] = lambda ants, deposit, length: ants * deposit / length,
+    kept: float | None = None,
+    fades_after: bool = False,
+    offset: int = 0,
+) -> int | None:
+    """How many generations until τ_max, by rules that may be wrong; None within 10 000."""
+    kept = 1 - evaporation if kept is None else kept
+    tau, more = first, gain(ants, deposit, length)
+    for generation in range(10_000):
+        if tau >= most:
+            return generation + offset
+        tau = kept * (tau + more) if fades_after else kept * tau + more
+    return None
+
+
+REACHED = [
+    (1.0, 10, 100.0, 150.0, 0.1, 15.0),
+    (0.5, 10, 100.0, 200.0, 0.2, 15.0),
+    (0.05, 4, 100.0, 140.0, 0.05, 15.0),
+    (2.0, 10, 60.0, 150.0, 0.15, 15.0),
+    (0.05, 20, 100.0, 180.0, 0.4, 15.0),
+    (6.0, 10, 80.0, 150.0, 0.3, 15.0),
+    (0.05, 3, 400.0, 140.0, 0.1, 15.0),
+]
+
+CAP_MISTAKES: list[tuple[Callable[..., int | None], str]] = [
+    (
+        lambda *case: math.ceil((case[5] - case[0]) * case[3] / (case[1] * case[2])),
+        "You let nothing evaporate meanwhile. The more there is, the more of it goes.",
+    ),
+    (
+        lambda *case: capped(*case, gain=lambda ants, deposit, length: deposit / length),
+        "You let one ant pass. All of them pass this node, and each lays Q/L.",
+    ),
+    (lambda *case: capped(*case, kept=case[4]), "You keep the share ρ and let the rest evaporate. ρ is what goes."),
+    (
+        lambda *case: capped(*case, fades_after=True),
+        "You let the fresh scent evaporate as well. In Eq. 4 it comes on top of what is left of the old.",
+    ),
+    (lambda *case: capped(*case, offset=1), "One too many: the scent is already there before your last generation."),
+    (lambda *case: capped(*case, offset=-1), "One too few: after so many generations it is still below τ_max."),
+]
