@@ -936,8 +936,8 @@ assert int(cells) == 23
 # | | | knowing of the drift: 13.7 times less (quartiles 4.0, 18.9) |
 #
 # (Random campuses against the tie-break's shortest route where nothing else is said, 95 % intervals in brackets.)
-# Whether the papers' own planners find these routes is another question: ants in notebook 09, swarms and beetles in
-# notebook 10. Here stands what they can find at best.
+# Whether the papers' own planners find these routes is another question: [ants](09_ant_colony.ipynb), [swarms and
+# beetles](10_particle_swarm_and_beetles.ipynb). Here stands what they can find at best.
 #
 # ## Your turn
 #
