@@ -17,16 +17,20 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize, to_hex, to_rgb
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.planners.comparison import Comparison
 from uavlab.planners.potential_field import potential_forces
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 
 ROUTE_COLORS = ("#D55E00", "#0072B2", "#000000", "#CC79A7", "#009E73", "#E69F00")
+CONVERGENCE_STYLES = tuple(zip(ROUTE_COLORS, ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2))), strict=True))
+"""Colour and line style of one planner among several: told apart in grey, too."""
+
 SEQUENTIAL = matplotlib.colormaps["cividis"]
 DPI = 100
 SUN = np.array([-0.45, -0.7, 0.55])
@@ -252,6 +256,74 @@ def front(routes: Sequence[Route], *marked: Route, label: str = "risk ∫ r ds/d
     axes.grid(alpha=0.3, which="both")
     axes.legend(fontsize=8)
     return finished(figure)
+
+
+def convergence(
+    comparison: Comparison,
+    by: str = "evaluations",
+    *,
+    until: int | None = None,
+) -> Figure:
+    """How planners came near the exact optimum: median gap over maps and seeds, with a band between the quartiles.
+
+    The gap is even up to 10 % and by factors beyond. A line begins where half of the runs have a route, and a band
+    ends where a quarter of them has none.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    by : {"evaluations", "iterations"}
+        What counts as effort.
+    until : int, optional
+        Last evaluation or iteration to show; by default all of them.
+
+    Raises
+    ------
+    ValueError
+        If `by` is neither, `until` is below 2, there are more than six planners, or none has a route in half of its runs.
+    """
+    if not isinstance(comparison, Comparison):
+        raise ValueError(f"comparison must be a Comparison, as from compare_planners, got {type(comparison).__name__}")
+    if by not in ("evaluations", "iterations"):
+        raise ValueError(f"by must be 'evaluations' or 'iterations', got {by!r}")
+    if until is not None:
+        checks.whole("until", until, least=2)
+    if len(comparison.planners) > len(CONVERGENCE_STYLES):
+        raise ValueError(f"comparison must have at most {len(CONVERGENCE_STYLES)} planners, to tell their lines apart")
+    figure, axes = new_figure(8.4, 4.4)
+    runs = zip(comparison.planners, comparison.histories, comparison.iterations, strict=True)
+    for (name, histories, ends), (color, style) in zip(runs, CONVERGENCE_STYLES, strict=False):
+        made = np.arange(1, histories.shape[-1] + 1) if by == "evaluations" else ends
+        effort = made if by == "evaluations" else np.arange(1, len(ends) + 1)
+        gaps = 100 * histories.reshape(-1, histories.shape[-1])[:, made - 1]
+        low, high = np.quantile(gaps, [0.25, 0.75], axis=0, method="nearest")
+        shown = slice(until)
+        axes.plot(effort[shown], finite_or_nan(np.median(gaps, axis=0))[shown], color=color, linestyle=style,
+                  linewidth=2, label=name)  # fmt: skip
+        axes.fill_between(effort[shown], finite_or_nan(low)[shown], finite_or_nan(high)[shown], color=color, alpha=0.13,
+                          linewidth=0)  # fmt: skip
+    if not any(np.isfinite(line.get_ydata()).any() for line in axes.lines):
+        raise ValueError("comparison must have a planner with a route in half of its runs, to have a median gap")
+    axes.axhline(0.0, color="0.4", linewidth=1)
+    axes.annotate("exact optimum on the grid", (0.99, 0.0), (0, -3), xycoords=("axes fraction", "data"),
+                  textcoords="offset points", ha="right", va="top", fontsize=8, color="0.3")  # fmt: skip
+    axes.set_yscale("symlog", linthresh=10.0, linscale=1.0)
+    axes.set_yticks([-10, -5, 0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000], minor=False)
+    axes.yaxis.set_major_formatter("{x:g} %")
+    axes.yaxis.set_minor_locator(NullLocator())
+    effort, gaps = np.concatenate([line.get_xydata() for line in axes.lines[:-1]]).T
+    axes.set(xlabel=f"{by} made", ylabel="gap to the exact optimum", xlim=(0, effort.max()))
+    axes.set_ylim(min(-2.0, 1.2 * np.nanmin(gaps)), max(12.0, 1.5 * np.nanmax(gaps)))
+    axes.xaxis.set_major_formatter("{x:,g}")
+    axes.grid(alpha=0.3)
+    axes.legend(title="median, band: quartiles", title_fontsize=8, fontsize=8, loc="upper left",
+                bbox_to_anchor=(1.0, 1.0))  # fmt: skip
+    return finished(figure)
+
+
+def finite_or_nan(values: np.ndarray) -> np.ndarray:
+    """The values, those that aren't finite as NaN, where nothing is drawn."""
+    return np.where(np.isfinite(values), values, np.nan)
 
 
 def profile(city: City, *routes: Route, safe_distance: float | None = None) -> Figure:

@@ -190,7 +190,7 @@ except ValueError as error:
 # | [07 potential field](07_potential_field.ipynb) | What if the goal just pulls and the walls push? |
 # | [08 REPARE](08_repare.ipynb) | How should the weather change the route, and what beats the paper's planner? |
 # | [09 ant colony](09_ant_colony.ipynb) | Can ants find the route of least risk, and how far from it do they end? |
-# | [10 particle swarm and beetles](10_particle_swarm_and_beetles.ipynb) | And swarms? What decides, if not the algorithm? |
+# | [10 swarms and beetles](10_particle_swarm_and_beetles.ipynb) | And swarms? What decides, if not the algorithm? |
 #
 # All but this one end with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is
 # right, and if not, what to think about. The route of this notebook as a file for other programs:

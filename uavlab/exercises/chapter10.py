@@ -1,0 +1,365 @@
+"""Exercises of chapter 10, swarms and beetles: a step of a swarm, a step of a beetle, and whether a planner is better.
+
+A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
+by how they are written.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from uavlab.exercises import NOTHING
+
+Step = tuple[np.ndarray, np.ndarray]
+Function = Callable[[np.ndarray], float]
+
+
+def exercise_1(fly: Callable[..., Any]) -> str:
+    """10.1: positions and velocities of a swarm after one step, the velocity limited, the box closed."""
+    questions = [swarm_question(seed) for seed in range(6)]
+    given = []
+    for question in questions:
+        copies = [np.copy(part) for part in question]
+        answer = fly(*copies)
+        if answer is None:
+            return NOTHING
+        if any(not np.array_equal(a, b) for a, b in zip(copies, question, strict=True)):
+            return "Your function changes an array that it was given. The caller may still need it: make new ones."
+        if not isinstance(answer, tuple | list) or len(answer) != 2:
+            return "The answer has two parts, positions and velocities."
+        given.append(tuple(np.asarray(part, dtype=float) for part in answer))
+        shapes = [part.shape for part in given[-1]]
+        if shapes != [question[0].shape] * 2:
+            return (
+                f"Positions and velocities have shape {question[0].shape}, as x; yours have {shapes[0]}, {shapes[1]}."
+            )
+
+    def agrees(rule: Callable[..., Step], part: int | None = None) -> bool:
+        wanted = [rule(*question) for question in questions]
+        parts = (0, 1) if part is None else (part,)
+        return all(np.allclose(g[p], w[p], rtol=1e-9) for g, w in zip(given, wanted, strict=True) for p in parts)
+
+    if agrees(flown):
+        return ""
+    for mistake, hint in FLIGHT_MISTAKES:
+        if agrees(mistake):
+            return hint
+    if agrees(flown, 0):
+        return "The positions are right. The velocities should be those with which the particles flew there."
+    if agrees(flown, 1):
+        return (
+            "The velocities are right. Where does a particle come with its new velocity, and what if that is outside?"
+        )
+    x, v = (float(part[0, 0]) for part in (given[0][0], given[0][1]))
+    right = flown(*questions[0])
+    return (
+        f"A coordinate at {questions[0][0][0, 0]:.3f} with velocity {questions[0][1][0, 0]:.3f} comes to {x:.3f} with "
+        f"{v:.3f}, and should to {right[0][0, 0]:.3f} with {right[1][0, 0]:.3f}. Write the three terms of the velocity "
+        "one below the other: how large is each?"
+    )
+
+
+def swarm_question(seed: int) -> tuple[Any, ...]:
+    """Seven particles in three dimensions, some near the border, some that would be too fast."""
+    rng = np.random.default_rng(1010 + seed)
+    x, best = rng.uniform(-4, 4, (2, 7, 3))
+    v = rng.normal(0, 1.5, (7, 3))
+    r1, r2 = rng.random((2, 7, 3))
+    return x, v, best, rng.uniform(-4, 4, 3), float(rng.uniform(0.4, 1.0)), r1, r2, 1.8, -4.0, 4.0
+
+
+def flown(
+    x: np.ndarray,
+    v: np.ndarray,
+    best: np.ndarray,
+    leader: np.ndarray,
+    inertia: float,
+    r1: np.ndarray,
+    r2: np.ndarray,
+    v_max: float,
+    low: float,
+    high: float,
+    *,
+    c1: float = 1.5,
+    c2: float = 2.0,
+    sign: float = 1.0,
+    limit: str = "both",
+    closed: bool = True,
+    with_old: bool = False,
+) -> Step:
+    """One step by rules that may be wrong."""
+    new = inertia * v + sign * (c1 * r1 * (best - x) + c2 * r2 * (leader - x))
+    limited = {
+        "both": np.clip(new, -v_max, v_max),
+        "above": np.minimum(new, v_max),
+        "none": new,
+        "length": new * np.minimum(1, v_max / np.maximum(np.linalg.norm(new, axis=1, keepdims=True), 1e-12)),
+    }[limit]
+    moved = x + (v if with_old else limited)
+    return (np.clip(moved, low, high) if closed else moved), limited
+
+
+def wrongly_flown(**how: Any) -> Callable[..., Step]:
+    return lambda *question: flown(*question, **how)
+
+
+def limited_late(*question: Any) -> Step:
+    """The velocity limited only after the particle has moved."""
+    moved, _ = flown(*question, limit="none")
+    return moved, flown(*question)[1]
+
+
+def one_number(*question: Any) -> Step:
+    """The same random number for both pulls."""
+    same = (*question[:6], question[5], *question[7:])
+    return flown(*same)
+
+
+OPEN = "Some particles leave the box. Where do they stop?"
+FLIGHT_MISTAKES: list[tuple[Callable[..., Step], str]] = [
+    (
+        wrongly_flown(with_old=True),
+        "Your particles move with the velocity they had. In Eq. 1 the velocity is new before the place is.",
+    ),
+    (wrongly_flown(limit="none"), "The velocities have no limit: what is v_max for?"),
+    (
+        wrongly_flown(limit="above"),
+        "Forwards the velocity is limited, backwards it isn't. Which is the smallest that is allowed?",
+    ),
+    (
+        wrongly_flown(limit="length"),
+        "You limit the length of the velocity. The exercise limits each of its parts.",
+    ),
+    (limited_late, "You limit the velocity after the particles have moved with it."),
+    (wrongly_flown(closed=False), OPEN),
+    (wrongly_flown(closed=False, limit="none"), f"The velocities have no limit: what is v_max for? And: {OPEN}"),
+    (
+        wrongly_flown(c1=2.0, c2=1.5),
+        "c1 and c2 are exchanged: which of them pulls to the particle's own best?",
+    ),
+    (
+        wrongly_flown(sign=-1.0),
+        "Your particles fly away from both bests. From where to where does best − x point?",
+    ),
+    (one_number, "Both pulls use r1. They are drawn independently of each other."),
+    (wrongly_flown(c2=0.0), "The pull to the leader is missing: what does one particle learn of the others?"),
+    (wrongly_flown(c1=0.0), "The pull to the particle's own best is missing."),
+]
+
+
+def exercise_2(walk: Callable[..., Any]) -> str:
+    """10.2: where a beetle stands after one step."""
+    rng = np.random.default_rng(1020)
+    questions = [
+        (f, rng.uniform(-2, 2, 3), rng.normal(size=3) * rng.uniform(0.2, 5), rng.uniform(0.5, 3), rng.uniform(0.1, 0.4))
+        for f in (bowl, slope, waves) * 20
+    ]
+    given = []
+    for f, x, b, reach, step in questions:
+        stand, look = x.copy(), b.copy()
+        answer = walk(f, stand, look, reach, step)
+        if answer is None:
+            return NOTHING
+        if not (np.array_equal(stand, x) and np.array_equal(look, b)):
+            return "Your function changes x or b themselves. The caller may still need them: return a new array."
+        if np.shape(answer) != (3,):
+            return f"The answer is a point of three numbers here, as x; yours has the shape {np.shape(answer)}."
+        given.append(np.asarray(answer, dtype=float))
+
+    def agrees(rule: Callable[..., np.ndarray]) -> bool:
+        wanted = [rule(*question) for question in questions]
+        return bool(np.allclose(given, wanted, rtol=1e-9))
+
+    if agrees(walked):
+        stay = walk(lambda point: 1.0, np.zeros(3), np.ones(3), 1.0, 1.0)
+        if np.allclose(stay, 0.0):
+            return ""
+        return "Where both sides smell the same your beetle walks. Which side is better there?"
+    for mistake, hint in WALK_MISTAKES:
+        if agrees(mistake):
+            return hint
+    f, x, b, reach, step = questions[0]
+    gone, along = given[0] - x, b / np.linalg.norm(b)
+    return (
+        f"With f = |x|², x = {np.round(x, 2)}, b = {np.round(b, 2)}, reach = {reach:.2f} and step = {step:.2f} your "
+        f"beetle goes {np.linalg.norm(gone):.3f} far, {gone @ along:+.3f} of it along b. How far should it go, along "
+        "what, and to which side?"
+    )
+
+
+def bowl(point: np.ndarray) -> float:
+    return float(np.sum(np.square(point)))
+
+
+def slope(point: np.ndarray) -> float:
+    return float(np.dot(point, (1.0, -2.0, 0.5)))
+
+
+def waves(point: np.ndarray) -> float:
+    return float(np.sum(np.sin(3 * np.asarray(point)) + 0.1 * np.square(point)))
+
+
+def walked(
+    f: Function,
+    x: np.ndarray,
+    b: np.ndarray,
+    reach: float,
+    step: float,
+    *,
+    uphill: bool = False,
+    unit: bool = True,
+    half: float = 1.0,
+    far: bool = False,
+    one_side: bool = False,
+    by_size: bool = False,
+    greedy: bool = False,
+) -> np.ndarray:
+    """A step by rules that may be wrong."""
+    along = b / np.linalg.norm(b) if unit else b
+    left = f(x + half * reach * along)
+    right = f(x) if one_side else f(x - half * reach * along)
+    side = (left - right) if by_size else np.sign(left - right)
+    moved = x - (-1 if uphill else 1) * (reach if far else step) * along * side
+    return x if greedy and f(moved) >= f(x) else moved
+
+
+def wrongly_walked(**how: Any) -> Callable[..., np.ndarray]:
+    return lambda *question: walked(*question, **how)
+
+
+WALK_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
+    (
+        wrongly_walked(uphill=True),
+        "Your beetle walks to the side where f is larger. If f is larger on the left, which sign has the difference, "
+        "and which way is it then to the right?",
+    ),
+    (
+        wrongly_walked(unit=False),
+        "How far your beetle looks and walks depends on the length of b. Only its direction counts: what is left of a "
+        "vector when its length is taken out?",
+    ),
+    (
+        wrongly_walked(far=True),
+        "Your beetle walks as far as its antennae reach. It looks with one length and walks with the other.",
+    ),
+    (
+        wrongly_walked(half=0.5),
+        "Your tips are half of `reach` away from the body. It is the distance from the body to one tip (Eq. 18), not "
+        "from tip to tip.",
+    ),
+    (
+        wrongly_walked(one_side=True),
+        "You compare one tip with the place where the beetle stands. It has two antennae.",
+    ),
+    (
+        wrongly_walked(by_size=True),
+        "The larger the difference, the further your beetle walks. Only the sign of it counts.",
+    ),
+    (
+        wrongly_walked(greedy=True),
+        "Your beetle stays where walking would make it worse. That is the greedy one; this one walks all the same.",
+    ),
+]
+
+
+def exercise_3(share_of_wins: Callable[..., Any]) -> str:
+    """10.3: the share of runs that are won, and its interval by resampling maps."""
+    questions = [gaps_of(seed) for seed in range(10)]
+    answers = []
+    for seed, (ours, theirs) in enumerate(questions):
+        answer = share_of_wins(ours.copy(), theirs.copy(), np.random.default_rng(seed))
+        if answer is None:
+            return NOTHING
+        if np.size(answer) != 3:
+            return (
+                f"The answer has three numbers: the share, and both ends of its interval. Yours has {np.size(answer)}."
+            )
+        answers.append(np.ravel(np.asarray(answer, dtype=float)))
+    given = np.array(answers)
+
+    def share_is(rule: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> bool:
+        return bool(np.allclose(given[:, 0], [rule(*question).mean() for question in questions], atol=1e-9))
+
+    if not share_is(won):
+        for mistake, hint in SHARE_MISTAKES:
+            if share_is(mistake):
+                return hint
+        ours, theirs = questions[0]
+        right_share = won(ours, theirs).mean()
+        return f"For the first of our questions your share is {given[0, 0]:.4f}; it should be {right_share:.4f}."
+    if (given[:, 1] > given[:, 2]).any():
+        return "The lower end of your interval is above the upper one."
+    right = np.array([interval(won(*question), maps=True) for question in questions])
+    ratio = np.mean((given[:, 2] - given[:, 1]) / (right[:, 1] - right[:, 0]))
+    if 0.94 < ratio < 1.06:
+        if np.allclose(given[:, 1:], right, atol=0.06):
+            return ""
+        return "Your interval is as wide as it should be, but lies elsewhere. Which quantiles are its two ends?"
+    of_runs = np.array([interval(won(*question), maps=False) for question in questions])
+    narrow = np.mean((of_runs[:, 1] - of_runs[:, 0]) / (right[:, 1] - right[:, 0]))
+    if abs(ratio - narrow) < 0.04:
+        return (
+            "The share is right, the interval much too narrow: so it would be if all runs were independent. Many seeds "
+            "on one map tell about one map. What has to be drawn, runs or maps?"
+        )
+    for level, ends in ((0.9, "5 % and 95 %"), (0.6827, "about 16 % and 84 %")):
+        other = np.array([interval(won(*question), maps=True, level=level) for question in questions])
+        if abs(ratio - np.mean((other[:, 1] - other[:, 0]) / (right[:, 1] - right[:, 0]))) < 0.04:
+            return f"Your ends are the quantiles of {ends}. How much may lie below and above an interval of 95 %?"
+    if (given[:, 1] == given[:, 2]).all():
+        return "Both ends are the same. Is something drawn anew each time?"
+    return (
+        f"The share is right. The interval is {ratio:.2f} times as wide as it should be: how many maps are drawn each "
+        "time, with replacement or without, and do all their seeds come along?"
+    )
+
+
+def gaps_of(seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gaps of two planners (12 maps, 8 seeds): maps matter more than seeds; some ties, some that didn't arrive."""
+    rng = np.random.default_rng(1030 + seed)
+    theirs = rng.exponential(8.0, (12, 8)).round(2)
+    ours = (theirs - rng.normal(0.5, 5.0, (12, 1)) - rng.normal(0, 0.8, (12, 8))).round(2)
+    tie = rng.random((12, 8)) < 0.15
+    ours[tie] = theirs[tie]
+    ours[rng.random((12, 8)) < 0.05] = np.inf
+    theirs[rng.random((12, 8)) < 0.03] = np.inf
+    ours[0, 0] = theirs[0, 0] = np.inf
+    return ours, theirs
+
+
+def won(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+    return np.where(ours == theirs, 0.5, ours < theirs)
+
+
+def finite_won(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+    return won(ours, theirs)[np.isfinite(ours) & np.isfinite(theirs)]
+
+
+SHARE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], str]] = [
+    (lambda ours, theirs: 1 - won(ours, theirs), "That is how often the other one wins: the smaller gap is better."),
+    (lambda ours, theirs: ours < theirs, "You count ties as lost. What counts a tie?"),
+    (lambda ours, theirs: ours <= theirs, "You count ties as won. What counts a tie?"),
+    (lambda ours, theirs: 100 * won(ours, theirs), "That is in per cent. A share lies between 0 and 1."),
+    (
+        lambda ours, theirs: won(np.median(ours, axis=1), np.median(theirs, axis=1)),
+        "You compare the medians of each map. The question is about runs: each seed against the same seed.",
+    ),
+    (
+        lambda ours, theirs: (ours < theirs)[ours != theirs],
+        "You leave the ties out. Each run counts, a tie half.",
+    ),
+    (
+        finite_won,
+        "You leave out runs that didn't arrive. Who doesn't arrive has lost against one who does.",
+    ),
+]
+
+
+def interval(values: np.ndarray, *, maps: bool, level: float = 0.95) -> tuple[float, float]:
+    """Ends of a bootstrap interval of the mean of values (M, S), by drawing maps or runs."""
+    rng = np.random.default_rng(0)
+    rows = values if maps else values.reshape(-1, 1)
+    shares = rows[rng.integers(len(rows), size=(4000, len(rows)))].mean(axis=(1, 2))
+    low, high = np.quantile(shares, [(1 - level) / 2, (1 + level) / 2])
+    return float(low), float(high)
