@@ -280,7 +280,8 @@ def convergence(
     Raises
     ------
     ValueError
-        If `by` is neither, `until` is below 2, there are more than six planners, or none has a route in half of its runs.
+        If `by` is neither, `until` is below 2, there are more than six planners, or no planner has a route in half of
+        its runs.
     """
     if not isinstance(comparison, Comparison):
         raise ValueError(f"comparison must be a Comparison, as from compare_planners, got {type(comparison).__name__}")
