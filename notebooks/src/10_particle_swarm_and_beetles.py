@@ -676,16 +676,16 @@ def merged(*parts):
     return Comparison(**arrays, **lists, exact=parts[0].exact)
 
 
-first_part = run({"PSO-BAS": waypoint_swarm, "ACO": ant_colony}, campuses, seeds=range(5))
+first_part = run({"PSO-BAS": waypoint_swarm, "PSO": partial(waypoint_swarm, optimizer="pso")}, campuses, seeds=range(5))
 print(first_part.table().round(1).drop(columns="seconds"))
 
 # %%
-second_part = run({"PSO": partial(waypoint_swarm, optimizer="pso")}, campuses, seeds=range(5))
+second_part = run({"PSO-ACO": partial(waypoint_swarm, optimizer="pso_aco")}, campuses, seeds=range(5))
 print(second_part.table().round(1).drop(columns="seconds"))
 
 # %%
-third_part = run({"PSO-ACO": partial(waypoint_swarm, optimizer="pso_aco")}, campuses, seeds=range(5))
-tuned = merged(first_part, third_part, second_part)
+third_part = run({"ACO": ant_colony}, campuses, seeds=range(5))
+tuned = merged(first_part, second_part, third_part)
 table = tuned.table()
 print(table.round(1).drop(columns="seconds"))
 assert table["median"]["PSO-BAS"] < 6 < table["90 %"]["PSO-BAS"]
