@@ -142,14 +142,7 @@ def waypoint_swarm(
     task = task_of(risk_map, start, goal, price, limits, curve == "spline")
     space = space_of(task, waypoints, encoding)
     swarm = 1 if optimizer == "bas" else settings.get("swarm", SWARM)
-    ants = max(int(ANTS_SHARE * budget), ANTS) if optimizer == "pso_aco" else 0
-    last = int(refinement * budget)
-    left = budget - ants - arcs - last
-    if left < max(swarm, 4) or 0 < last < 6 * CANDIDATES:
-        raise ValueError(
-            f"budget must leave at least {max(swarm, 4)} evaluations for the swarm, {6 * CANDIDATES} for refinement; "
-            f"of {budget} there go {ants} to ants, {arcs} to arcs, {last} to refinement, {left} are left"
-        )
+    ants, left, last = shares(budget, optimizer, arcs, refinement, swarm)
     measure = Measure(task)
     if ants:
         walked = ant_colony(
@@ -158,11 +151,8 @@ def waypoint_swarm(
         )  # fmt: skip
         measure.note(walked.info["history"], walked.info["iterations"])
         initial = walked if walked.reached else initial
-    first = space.vectors(arcs_between(task, waypoints, arcs, rng))
-    if arcs:
-        first = first[np.argsort(measure(space.control(first)))]
-    if initial is not None:
-        first = np.concatenate([space.vectors(near(task, initial, risk_map, waypoints)[None]), first])
+    begin = None if initial is None else near(task, initial, risk_map, waypoints)
+    first = first_vectors(measure, space, arcs, begin, rng)
     if len(first):
         settings = {"start": first[:swarm], **settings}
     if optimizer == "pso_bas":
@@ -172,13 +162,7 @@ def waypoint_swarm(
     found = search(lambda vectors: measure(space.control(vectors)), space.bounds, left, rng, **{**own, **settings})
     measure.iterations += (before + found.iterations).tolist()
     if last:
-        per_segment = PER_SEGMENT // 2
-        ends = np.concatenate([found.best[None], found.swarm[1:CANDIDATES]])  # a lone beetle may have left its best
-        finer = [task.finer(control) for control in space.control(ends)]
-        each = last // 2 // len(finer)
-        moved = [one_by_one(measure, control, per_segment, each, rng) for control in finer]
-        best = min(moved, key=lambda control: task.costs(control[None], per_segment)[0])
-        one_by_one(measure, best, per_segment, last - each * len(finer), rng)
+        move_finer(measure, space, found, last, rng)
     route = route_of(task, measure.best, measure.per_segment, risk_map, f"{optimizer} waypoints")
     if ants and walked.cost < route.cost:
         route = replace(walked, planner=route.planner, info={"control": walked.points})
@@ -288,6 +272,39 @@ def space_of(task: Task, waypoints: int, encoding: str) -> Space:
     bounds[:, 0, 0], bounds[:, 0, 1] = walls[0].max(axis=1), walls[1].min(axis=1)
     bounds[:, 1, 1] = size[2]
     return Space(ends, anchors, np.stack([side, (0.0, 0.0, 1.0)]), bounds.reshape(-1, 2))
+
+
+def shares(budget: int, optimizer: str, arcs: int, refinement: float, swarm: int) -> tuple[int, int, int]:
+    """How many evaluations go to ants, to the swarm and to refinement."""
+    ants = max(int(ANTS_SHARE * budget), ANTS) if optimizer == "pso_aco" else 0
+    last = int(refinement * budget)
+    left = budget - ants - arcs - last
+    if left < max(swarm, 4) or 0 < last < 6 * CANDIDATES:
+        raise ValueError(
+            f"budget must leave at least {max(swarm, 4)} evaluations for the swarm, {6 * CANDIDATES} for refinement; "
+            f"of {budget} there go {ants} to ants, {arcs} to arcs, {last} to refinement, {left} are left"
+        )
+    return ants, left, last
+
+
+def first_vectors(
+    measure: Measure, space: Space, arcs: int, initial: np.ndarray | None, rng: np.random.Generator
+) -> np.ndarray:
+    """Where the swarm begins (N, D): near the initial route (K + 2, 3) if there is one, then on the best arcs."""
+    first = space.vectors(arcs_between(measure.task, len(space.anchors), arcs, rng))
+    if arcs:
+        first = first[np.argsort(measure(space.control(first)))]
+    return first if initial is None else np.concatenate([space.vectors(initial[None]), first])
+
+
+def move_finer(measure: Measure, space: Space, found: Result, budget: int, rng: np.random.Generator) -> None:
+    """Move twice as many points one by one: half of the budget for the best few curves, half for the best of those."""
+    task, per_segment = measure.task, PER_SEGMENT // 2
+    ends = np.concatenate([found.best[None], found.swarm[1:CANDIDATES]])  # a lone beetle may have left its best
+    each = budget // 2 // len(ends)
+    moved = [one_by_one(measure, task.finer(control), per_segment, each, rng) for control in space.control(ends)]
+    best = min(moved, key=lambda control: task.costs(control[None], per_segment)[0])
+    one_by_one(measure, best, per_segment, budget - each * len(ends), rng)
 
 
 def directions(task: Task) -> tuple[np.ndarray, np.ndarray]:
