@@ -561,11 +561,11 @@ assert -0.10 < np.median(claims["1/4 voxel"][1]) < -0.03
 assert np.median(claims["2 voxels"][1]) < np.median(claims["1 voxel"][1]) < np.median(claims["1/4 voxel"][1])
 
 # %% [markdown]
-# Not optimised, the samples are fair to within a few per cent. Optimised, they claim 6 % less than the curve costs with
-# legs of a quarter of a voxel, and a third less with legs of a voxel. Each optimum sits where the samples miss
-# something. (With legs of a sixteenth it is half a per cent, at sixteen times the work of a voxel.) A comparison of
-# optimisers that samples rewards the best cheat. So `waypoint_swarm` integrates exactly, voxel by voxel, and needs no
-# more work for it than samples at a quarter.
+# Not optimised, the samples are fair to within a few per cent. Optimised, they claim 6 to 7 % less than the curve costs
+# with legs of a quarter of a voxel, and a third less with legs of a voxel. Each optimum sits where the samples miss
+# something. (With legs of a sixteenth hardly anything is left of it, at sixteen times the work of a voxel.) A
+# comparison of optimisers that samples rewards the best cheat. So `waypoint_swarm` integrates exactly, voxel by voxel,
+# and needs no more work for it than samples at a quarter.
 #
 # ## The paper's Figs 9 and 10
 #
@@ -640,7 +640,7 @@ assert printed_iterations["PSO"] < printed_iterations["PSO-BAS"]
 # %% [markdown]
 # *Convergence.* Printed PSO is the first to converge, after an iteration or two, because it never gets away from its
 # first arcs. Printed ants are done with their first generation for the same reason. Who converges first may simply have
-# given up. PSO-BAS, which does get somewhere, needs 35 of its 48 iterations.
+# given up. PSO-BAS, which does get somewhere, needs 38 of its 48 iterations.
 #
 # *Order.* PSO-BAS is ahead of PSO and of ACO in every run, as the paper says. It isn't ahead of PSO-ACO, neither by
 # evaluations nor by iterations: in our hybrid the ants are those of 09, not the printed ones, and a good route to begin
@@ -714,13 +714,13 @@ assert single.table()["median"]["BAS"] > 2 * single.table()["median"]["BAS + ref
 
 # %% [markdown]
 # Tuned, all four come within a few per cent, and none of them is done after 4 000 evaluations: the lines still fall. By
-# medians PSO-BAS is the best in the end and PSO-ACO next, as in the paper; up to 3 000 evaluations it is the ants that
-# are ahead. And look at the intervals: PSO-BAS before PSO is the only link that 60 runs on twelve maps prove. Without
-# refinement that one is gone, too.
+# medians PSO-BAS is the best in the end and PSO-ACO next, as in the paper; up to 2 500 evaluations it is the ants that
+# are ahead. And look at the intervals: that PSO-BAS is before PSO and before ACO is all that 60 runs on twelve maps
+# prove. Without refinement its lead over PSO is gone, too.
 #
-# The refinement *is* a beetle: greedy, its antennae on one waypoint at a time. It takes PSO-BAS from 9 to 2 %, PSO from
-# 11 to 5 %, and halves even the gap of a single beetle that has no swarm. So the paper's idea is good, in another
-# place: antennae help at the end, on a finer curve, more than in each iteration of the swarm.
+# The refinement *is* a beetle: greedy, its antennae on one waypoint at a time. It takes PSO-BAS from 10 to 2 %,
+# and more than halves even the gap of a single beetle that has no swarm. So the paper's idea is good, in another place:
+# antennae help at the end, on a finer curve, more than in each iteration of the swarm.
 #
 # ## Beyond: exact first, refine second
 #
@@ -756,10 +756,11 @@ print(f"PSO-BAS is below the grid's optimum in {below:.0%} of 60 runs, below the
 assert better < 0.15
 
 # %% [markdown]
-# On every map the refined optimum is below the grid's, and no run of the swarm is below it. The swarm's circles differ
-# from map to map more than from seed to seed: on two campuses all five runs end more than 10 % above the optimum. A
-# metaheuristic pays 4 000 evaluations for a route that is a little worse or, sometimes, a quarter worse, and doesn't
-# know which. What it has to offer is another thing: it needs no grid, and no cost that adds up along the way.
+# On every map the refined optimum is below the grid's, and hardly a run of the swarm is below it. The swarm's circles
+# differ from map to map more than from seed to seed: on one campus all five runs end more than 10 % above the optimum,
+# on another four. A metaheuristic pays 4 000 evaluations for a route that is a little worse or, sometimes, a quarter
+# worse, and doesn't know which. What it has to offer is another thing: it needs no grid, and no cost that adds up along
+# the way.
 #
 # ## Table 4
 #
@@ -819,8 +820,8 @@ assert sums[0] > 5 * 8.75e-7
 assert 23 < 8.75e-7 / industry < 24.5
 
 # %% [markdown]
-# On the reference campus the swarm reaches the paper's claim and more, with $w = 4$: over 85 % less risk for some 7 %
-# of length. Pure risk ($w = 0$) buys two per cent more with a quarter of the length. On random campuses it is
+# On the reference campus the swarm reaches the paper's claim and more, with $w = 4$: over 85 % less risk for some 6 %
+# of length. Pure risk ($w = 0$) buys three per cent more with a quarter of the length. On random campuses it is
 # another story, as in 05: the claim is reached on two of eleven at most. And $8.75\cdot10^{-7}$ itself is 24 cells over
 # industry, on a way of 157 m that crosses 31: no campus with this table's 30 000 people per km² has that.
 
@@ -887,16 +888,16 @@ print("samples at a quarter of a voxel claim", f"{np.median(claims['1/4 voxel'][
 # | Eq. 18 | $d$ is the distance between the antennae | it is half of it |
 # | Eqs 20, 21 | $d_0$, $\delta_0$ not given | they decide: nothing further than $20\,\delta_0$ can be reached |
 # | section 4.3 | "update through BAS" | two readings: on the best it rescues ω = 1, on the current place it doesn't |
-# | Fig. 10 | done after 55 iterations | with 200 iterations: 66 (quartiles 50 and 76): **reached** |
+# | Fig. 10 | done after 55 iterations | with 200 iterations: 58 (quartiles 46 and 69): **reached** |
 # | | before PSO, ACO and PSO-ACO | PSO and ACO stop at once, far from the optimum: **no** |
 # | | (nothing on evaluations) | an iteration of PSO-BAS costs four of PSO |
-# | Figs 9, 10 | least risk of all | printed: before PSO and ACO in all runs; before PSO-ACO in 22 % [8, 39] |
-# | | | ours: before PSO in 68 % [60, 77], PSO-ACO 43 % [28, 58], ACO 67 % [42, 90] |
-# | | | ours, no refinement: before PSO in 36 % [19, 53]: **partly** |
-# | Table 4 | −86 % risk, +15 % length | reference campus −86 %, +7 %; random ones: 2 of 11: **possible, not typical** |
+# | Figs 9, 10 | least risk of all | printed: before PSO and ACO in all runs; before PSO-ACO in 28 % [11, 47] |
+# | | | ours: before PSO in 73 % [63, 82], PSO-ACO 48 % [35, 60], ACO 72 % [52, 90] |
+# | | | ours, no refinement: before PSO in 44 % [31, 58]: **partly** |
+# | Table 4 | −86 % risk, +15 % length | reference campus −86 %, +6 %; random ones: 2 of 11: **possible, not typical** |
 # | | 8.75·10⁻⁷ | 23.8 cells over industry: no route that long has so little |
-# | (not said) | start; how curves are measured | no arcs: 114 % instead of 2.5; samples at ¼ voxel claim −6 % |
-# | (not said) | how far from the optimum | printed 17 %, ours 2.3 % (90 %: 16); exact and refined −5 % |
+# | (not said) | start; how curves are measured | no arcs: 114 % instead of 1.3; samples at ¼ voxel claim −6 % |
+# | (not said) | how far from the optimum | printed 17 %, ours 2.2 % (90 %: 15); exact and refined −5 % |
 #
 # (Medians of gaps, 4 000 evaluations, twelve campuses; intervals are 95 %, by bootstrap over the maps.) How to smooth a
 # route, and whether it can be flown then, is the question of notebook 11.

@@ -36,7 +36,7 @@ WAYPOINTS = 7
 ARCS = 200
 """Random arcs to begin with, of which the best make the first swarm."""
 
-HUMPS, WIDTH, HEIGHT = 5, 0.2, 3.0
+HUMPS, WIDTH, HEIGHT = 6, 0.2, 3.0
 """Half waves of an arc; how wide they usually are, as a share of the distance; how high [cells]."""
 
 REFINE, CANDIDATES = 0.4, 3
