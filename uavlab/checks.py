@@ -1,5 +1,7 @@
 """Checks of arguments that many functions share: each names the argument, its value and the range."""
 
+from collections.abc import Iterable
+
 import numpy as np
 import numpy.typing as npt
 
@@ -54,6 +56,14 @@ def positive_number(name: str, value: npt.ArrayLike) -> None:
 def at_least_one(name: str, value: npt.ArrayLike) -> None:
     values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values >= 1), f"{name} must be finite and at least 1")
+
+
+def one_of(name: str, value: str, known: Iterable[str]) -> str:
+    """The argument, if it is among the known ones."""
+    known = list(known)
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    return value
 
 
 def vectors(**named: npt.ArrayLike) -> list[np.ndarray]:

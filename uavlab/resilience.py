@@ -55,8 +55,8 @@ def resilience_level(load: str, disturbance: str) -> str:
     ValueError
         If a class is unknown.
     """
-    return TABLE3[checked_class("disturbance", disturbance, DISTURBANCES)][
-        list(LOADS).index(checked_class("load", load, LOADS))
+    return TABLE3[checks.one_of("disturbance", disturbance, DISTURBANCES)][
+        list(LOADS).index(checks.one_of("load", load, LOADS))
     ]
 
 
@@ -85,8 +85,8 @@ def safe_distance(load: str, disturbance: str, *, reading: str = "table", uav: U
     ValueError
         If a class or reading is unknown, or the load can't be lifted.
     """
-    checked_class("load", load, LOADS)
-    checked_class("disturbance", disturbance, DISTURBANCES)
+    checks.one_of("load", load, LOADS)
+    checks.one_of("disturbance", disturbance, DISTURBANCES)
     if reading == "table":
         return 2.0 + 0.5 * list(LOADS).index(load) + list(DISTURBANCES).index(disturbance)
     if reading != "physical":
@@ -141,12 +141,6 @@ def disturbance_class(wind: float) -> str:
     """
     checks.not_negative_number("wind", wind)
     return next((name for name, upper in DISTURBANCES.items() if wind <= upper), "heavy")
-
-
-def checked_class(name: str, value: str, known: dict[str, float]) -> str:
-    if not isinstance(value, str) or value not in known:
-        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
-    return value
 
 
 class Change(NamedTuple):
@@ -301,8 +295,7 @@ class Monitor:
     def __post_init__(self) -> None:
         for name in ("uav_diameter", "spare", "hold"):
             checks.positive_number(name, getattr(self, name))
-        if self.level not in LEVELS:
-            raise ValueError(f"level must be one of {', '.join(map(repr, LEVELS))}, got {self.level!r}")
+        checks.one_of("level", self.level, LEVELS)
         if self.level == "grounded":
             raise ValueError("level is 'grounded': there is no flight to watch; wait, or carry less")
         if self.level == "advanced":

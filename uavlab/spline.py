@@ -59,10 +59,15 @@ def subdivided(control: np.ndarray) -> np.ndarray:
 
 def fitted(points: np.ndarray, count: int) -> np.ndarray:
     """`count` control points of the B-spline nearest to a line of points (M, D), by least squares; the ends stay."""
-    along = np.linspace(0.0, 1.0, 8 * (count - 1) + 1)
-    distance = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    wanted = np.stack([np.interp(along * distance[-1], distance, axis) for axis in points.T], axis=1)
+    wanted = spread(points, 8 * (count - 1) + 1)
     basis = cubic_bspline(np.eye(count), per_segment=8)
     rest = wanted - basis[:, [0, -1]] @ points[[0, -1]]
     inner = np.linalg.lstsq(basis[:, 1:-1], rest, rcond=None)[0]
     return np.vstack([points[:1], inner, points[-1:]])
+
+
+def spread(points: np.ndarray, count: int) -> np.ndarray:
+    """`count` points at even distances along a line of points (M, D), from its first to its last."""
+    distance = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    along = np.linspace(0.0, 1.0, count)
+    return np.stack([np.interp(along * distance[-1], distance, axis) for axis in points.T], axis=1)

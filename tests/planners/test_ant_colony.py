@@ -28,6 +28,7 @@ from test_least_risk import (
 
 from uavlab.city import Building, City
 from uavlab.planners import ant_colony, least_risk
+from uavlab.planners.grid import MOVES
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 
 module = importlib.import_module("uavlab.planners.ant_colony")  # the package gives the function this name
@@ -295,7 +296,7 @@ def test_an_ant_leaves_its_piece_with_a_heading_that_the_next_one_can_follow():
     """East, then north at the next joint: it may arrive going east or north-east, never south-east."""
     risk_map = made_of(np.zeros((9, 9, 3), bool))
     query, look = query_and_look(risk_map, ((1, 9, 3), (9, 9, 3)), module.OURS)
-    north, last = int(np.flatnonzero((module.MOVES == (0, 1, 0)).all(axis=1))[0]), set()
+    north, last = int(np.flatnonzero((MOVES == (0, 1, 0)).all(axis=1))[0]), set()
     seen, nodes, rng = np.zeros(look.size, np.int64), np.empty(84, np.int64), np.random.default_rng(0)
     for mark in range(1, 2000):
         count, _, _ = module.walk(query, 0 * look, -9.0, 0 * look, 1.0, 0, north, seen, mark, rng, nodes)

@@ -220,7 +220,7 @@ def test_arcs_are_curves_on_the_map_that_bend_to_both_sides():
     assert arcs[:, -1] == pytest.approx(np.broadcast_to(task.target, (2000, 3)))
     assert (arcs >= 0).all()
     assert (arcs < task.terrain.closed.shape).all()
-    _, side = module.directions(task)
+    side = module.sideways_of(task)
     sideways = (arcs[:, 4] - (task.source + task.target) / 2) @ side
     assert (sideways > 0).mean() == pytest.approx(0.5, abs=4 * 0.5 / 2000**0.5)
     assert np.abs(sideways).mean() > 2

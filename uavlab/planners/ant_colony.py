@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.compiled import compiled
-from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, show
+from uavlab.planners.grid import BOXES, LENGTHS, blocked_around_node, show, steps_of
 from uavlab.planners.least_risk import (
     MAX_PITCH,
     MAX_TURN,
@@ -168,7 +168,7 @@ def ant_colony(
         pieces[most : most + 1] = [pieces[most][: middle + 1], pieces[most][middle:]]
         for at in (most, most + 1):
             found = forage(colony, pieces[at], joined(pieces[:at]), joined(pieces[at + 1 :]), half)
-            saved = way_cost(query, pieces[at]) - found.costs
+            saved = way_cost(query, pieces[at], moves_of(query, pieces[at])) - found.costs
             history.append(total - np.maximum(np.maximum.accumulate(saved), 0.0))
             if saved.max() > 0:
                 pieces[at], total = found.nodes, float(history[-1][-1])
@@ -325,15 +325,14 @@ def walk(query, trail, least, look, alpha, heading, then, seen, mark, rng, nodes
     It comes with a heading, and leaves the target with the move `then`. It visits no node that is TAKEN, and none
     twice: `seen` has its mark on those where it was.
     """
-    ny, nz = query.blocked.shape[1], query.blocked.shape[2]
-    steps = (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
+    steps = steps_of(query.blocked)
     weights = np.empty(26)
     node = query.source
     nodes[0] = node
     seen[node] = mark
     cost = length = 0.0
     for count in range(1, len(nodes)):
-        around = blocked_around(query.blocked, node // (ny * nz), node // nz % ny, node % nz)
+        around = blocked_around_node(query.blocked, node)
         highest = -np.inf
         chosen = NO_MOVE
         for move in range(26):
@@ -396,10 +395,12 @@ def level_moves(query: Query, nodes: np.ndarray) -> np.ndarray:
     return moves[MOVE_HEADING[moves] != NO_HEADING]
 
 
-def way_cost(query: Query, nodes: np.ndarray) -> float:
-    moves = moves_of(query, nodes)
-    row = moves if len(query.price) > 1 else np.zeros_like(moves)
-    return float((LENGTHS[moves] * 0.5 * (query.price[row, nodes[:-1]] + query.price[row, nodes[1:]])).sum())
+@compiled
+def way_cost(query, nodes, moves):
+    cost = 0.0
+    for leg in range(len(moves)):
+        cost += edge(query, moves[leg], nodes[leg], nodes[leg + 1])
+    return cost
 
 
 def joined(pieces: list[np.ndarray]) -> np.ndarray:

@@ -23,6 +23,7 @@ from uavlab.planners.grid import (
     distance_left,
     endpoints,
     show,
+    steps_of,
 )
 from uavlab.planners.heap import open_list, pop, push, room
 from uavlab.route import Route
@@ -80,8 +81,7 @@ def astar(
     ValueError
         If start or goal can't be flown from or to, both lie in one voxel, or an argument is out of its range.
     """
-    if heuristic not in HEURISTICS:
-        raise ValueError(f"heuristic must be one of {', '.join(map(repr, HEURISTICS))}, got {heuristic!r}")
+    checks.one_of("heuristic", heuristic, HEURISTICS)
     if as_printed and price is None:
         raise ValueError("as_printed needs a price: without a penalty zone Eq. 13 is plain A*")
     source, target = endpoints(city, start, goal, min_clearance)
@@ -213,7 +213,7 @@ def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent
     Returns how many nodes were expanded and, with `record`, which, in order; a node may be expanded again (Eq. 13).
     """
     ny, nz = blocked.shape[1], blocked.shape[2]
-    steps = (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
+    steps = steps_of(blocked)
     goal_i, goal_j, goal_k = goal // (ny * nz), goal // nz % ny, goal % nz
     prices = price.ravel() if price is not None else None
     expanded = 0

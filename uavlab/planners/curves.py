@@ -15,7 +15,7 @@ from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
 from uavlab.planners.least_risk import Limits, flyable_endpoints, query_of
 from uavlab.risk import RiskMap
-from uavlab.spline import cubic_bspline, fitted, subdivided
+from uavlab.spline import cubic_bspline, fitted, spread, subdivided
 
 PER_SEGMENT = 8
 """Straight legs by which a segment of a curve is drawn and measured."""
@@ -66,10 +66,7 @@ class Task(NamedTuple):
 
     def nearest(self, points: np.ndarray, count: int) -> np.ndarray:
         """`count` control points of a curve along the points of a route (M, 3)."""
-        if self.spline:
-            return fitted(points, count)
-        distance = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-        return np.stack([np.interp(np.linspace(0, distance[-1], count), distance, axis) for axis in points.T], axis=1)
+        return fitted(points, count) if self.spline else spread(points, count)
 
 
 def task_of(

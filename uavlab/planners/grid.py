@@ -63,6 +63,20 @@ def blocked_around(blocked, i, j, k):
 
 
 @compiled
+def steps_of(blocked):
+    """By how much each move (26,) changes the code of a node."""
+    ny, nz = blocked.shape[1], blocked.shape[2]
+    return (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
+
+
+@compiled
+def blocked_around_node(blocked, node):
+    """`blocked_around` a node with this code."""
+    ny, nz = blocked.shape[1], blocked.shape[2]
+    return blocked_around(blocked, node // (ny * nz), node // nz % ny, node % nz)
+
+
+@compiled
 def distance_left(heuristic, di, dj, dk):
     """Estimate of the way [cells] over (di, dj, dk): straight (Eq. 9), by 26 moves (octile), or nothing."""
     di, dj, dk = abs(di), abs(dj), abs(dk)

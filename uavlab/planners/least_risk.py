@@ -19,7 +19,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.compiled import compiled
 from uavlab.planners.astar import ROUNDING, TIE_BREAK
-from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, endpoints, nearest_allowed, show
+from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around_node, endpoints, nearest_allowed, show, steps_of
 from uavlab.planners.heap import open_list, pop, push, room
 from uavlab.risk import RiskMap
 from uavlab.risk.model import heights_above_ground, high_enough
@@ -388,8 +388,7 @@ def rest_of_cost(query, until, waiting):
     It stops when the node `until` is reached; farther nodes then get the cost of that one, which is not too much.
     Returns the costs, infinite where no way leads to the goal, and how many nodes were expanded.
     """
-    ny, nz = query.blocked.shape[1], query.blocked.shape[2]
-    steps = (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
+    steps = steps_of(query.blocked)
     rest = np.full(query.blocked.size, np.inf)
     rest[query.target] = 0.0
     expanded = 0
@@ -399,7 +398,7 @@ def rest_of_cost(query, until, waiting):
         if node == until:
             return np.minimum(rest, rest[node]), expanded
         expanded += 1
-        around = blocked_around(query.blocked, node // (ny * nz), node // nz % ny, node % nz)
+        around = blocked_around_node(query.blocked, node)
         for back in range(26):
             move = 25 - back  # the moves stand in an order in which opposite ones mirror each other
             if around & BOXES[back] or not query.climb[move]:
@@ -415,8 +414,7 @@ def rest_of_cost(query, until, waiting):
 @compiled
 def search_states(query, rest, g, parent, waiting):
     """A* over states, node·STATES + heading, until one at the goal is expanded: that state, or −1, and the count."""
-    ny, nz = query.blocked.shape[1], query.blocked.shape[2]
-    steps = (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
+    steps = steps_of(query.blocked)
     first = query.source * STATES + NO_HEADING
     expanded = 0
     g[first] = 0.0
@@ -428,7 +426,7 @@ def search_states(query, rest, g, parent, waiting):
         if node == query.target:
             return state, expanded
         expanded += 1
-        around = blocked_around(query.blocked, node // (ny * nz), node // nz % ny, node % nz)
+        around = blocked_around_node(query.blocked, node)
         for move in range(26):
             if around & BOXES[move] or not query.climb[move] or not query.turn[heading, move]:
                 continue
@@ -444,7 +442,7 @@ def search_states(query, rest, g, parent, waiting):
 
 def trace(query: Query, parent: np.ndarray, last: int) -> np.ndarray:
     """Nodes from the start to the last state, back along the moves that led there."""
-    steps = MOVES @ np.array([query.blocked.shape[1] * query.blocked.shape[2], query.blocked.shape[2], 1])
+    steps = steps_of(query.blocked)
     nodes = [last // STATES]
     state = last
     while parent[state] != START:
@@ -463,8 +461,7 @@ def search_labels(query, rest, rest_length, limits):
     then on only shorter ones are of interest, for the next smaller limit. Returns state, predecessor and
     cost of all labels, and those found at the goal, longest first.
     """
-    ny, nz = query.blocked.shape[1], query.blocked.shape[2]
-    steps = (MOVES[:, 0] * ny + MOVES[:, 1]) * nz + MOVES[:, 2]
+    steps = steps_of(query.blocked)
     shortest = np.full(query.blocked.size * STATES, np.inf)  # of the labels expanded at each state
     states, before, costs, lengths = [query.source * STATES + NO_HEADING], [-1], [0.0], [0.0]
     found = [-1]
@@ -484,7 +481,7 @@ def search_labels(query, rest, rest_length, limits):
                 break
             limit = shorter[-1] / ROUNDING
             continue
-        around = blocked_around(query.blocked, node // (ny * nz), node // nz % ny, node % nz)
+        around = blocked_around_node(query.blocked, node)
         for move in range(26):
             if around & BOXES[move] or not query.climb[move] or not query.turn[heading, move]:
                 continue

@@ -168,8 +168,7 @@ def field_of(
 ) -> Field:
     """The arguments, checked."""
     for name, value, known in (("attraction", attraction, ATTRACTIONS), ("obstacles", obstacles, OBSTACLES)):
-        if value not in known:
-            raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+        checks.one_of(name, value, known)
     for name, number in (("pull", pull), ("push", push), ("reach", reach)):
         checks.positive_number(name, number)
     return Field(

@@ -23,7 +23,6 @@ from uavlab.planners.potential_field import repulsion
 from uavlab.resilience import (
     DISTURBANCES,
     LOADS,
-    checked_class,
     disturbance_class,
     gust_force,
     physical_distance,
@@ -246,11 +245,11 @@ def flight_conditions(
     ValueError
         If a class is unknown, or the wind is not two or three finite numbers.
     """
-    loaded = uav.loaded(LOADS[checked_class("load", load, LOADS)])
+    loaded = uav.loaded(LOADS[checks.one_of("load", load, LOADS)])
     argument = f"disturbance after {clock:.1f} s" if clock else "disturbance"
     wind = None
     if isinstance(disturbance, str):
-        kind, speed = checked_class(argument, disturbance, DISTURBANCES), DISTURBANCES[disturbance]
+        kind, speed = checks.one_of(argument, disturbance, DISTURBANCES), DISTURBANCES[disturbance]
         name = f"{load} load, {kind} disturbance"
     else:
         wind = three(f"{argument}, if no class, [m/s]", disturbance)

@@ -130,8 +130,7 @@ def waypoint_swarm(
         ("encoding", encoding, ("points", "planes")),
         ("curve", curve, ("spline", "polyline")),
     ):
-        if value not in known:
-            raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+        checks.one_of(name, value, known)
     for name, count, least in (("waypoints", waypoints, 1), ("arcs", arcs, 0), ("budget", budget, 1)):
         checks.whole(name, count, least)
     checks.number("refinement", refinement)
@@ -163,7 +162,7 @@ def waypoint_swarm(
     measure.iterations += (before + found.iterations).tolist()
     if last:
         move_finer(measure, space, found, last, rng)
-    route = route_of(task, measure.best, measure.per_segment, risk_map, f"{optimizer} waypoints")
+    route = route_of(measure, risk_map, f"{optimizer} waypoints")
     if ants and walked.cost < route.cost:
         route = replace(walked, planner=route.planner, info={"control": walked.points})
     info = {
@@ -229,8 +228,8 @@ def refine(
     task = task_of(risk_map, route.points[0], route.points[-1], price, limits, True)
     measure = Measure(task)
     count = max(int(route.length / risk_map.city.cell / SPACING), 2) + 1
-    control = one_by_one(measure, near(task, route, risk_map, count - 2), PER_SEGMENT // 2, budget, rng)
-    better = route_of(task, control, PER_SEGMENT // 2, risk_map, f"{route.planner} + refined")
+    one_by_one(measure, near(task, route, risk_map, count - 2), PER_SEGMENT // 2, budget, rng)
+    better = route_of(measure, risk_map, f"{route.planner} + refined")
     cost = route.integral(risk_map.city, task.terrain.price) / risk_map.city.cell
     info = {"evaluations": budget, "history": np.minimum(measure.history, cost), "elapsed": time.perf_counter() - began}
     if better.cost < cost:
@@ -264,7 +263,7 @@ def space_of(task: Task, waypoints: int, encoding: str) -> Space:
     size = np.array(task.terrain.closed.shape, float) - 1e-9  # within the last voxel
     if encoding == "points":
         return Space(ends, np.zeros((waypoints, 3)), np.eye(3), np.tile(np.stack([0 * size, size], 1), (waypoints, 1)))
-    _, side = directions(task)
+    side = sideways_of(task)
     anchors = task.source + np.linspace(0, 1, waypoints + 2)[1:-1, None] * (task.target - task.source)
     anchors[:, 2] = 0.0
     bounds = np.zeros((waypoints, 2, 2))
@@ -303,15 +302,15 @@ def move_finer(measure: Measure, space: Space, found: Result, budget: int, rng: 
     ends = np.concatenate([found.best[None], found.swarm[1:CANDIDATES]])  # a lone beetle may have left its best
     each = budget // 2 // len(ends)
     moved = [one_by_one(measure, task.finer(control), per_segment, each, rng) for control in space.control(ends)]
-    best = min(moved, key=lambda control: task.costs(control[None], per_segment)[0])
+    best, _ = min(moved, key=lambda control_and_cost: control_and_cost[1])
     one_by_one(measure, best, per_segment, budget - each * len(ends), rng)
 
 
-def directions(task: Task) -> tuple[np.ndarray, np.ndarray]:
-    """Unit vectors of the way from start to goal on the map, and across it; east if the goal is straight above."""
-    way = (task.target - task.source) * (1.0, 1.0, 0.0)
-    ahead = way / np.linalg.norm(way) if way.any() else np.array([1.0, 0.0, 0.0])
-    return ahead, np.array([-ahead[1], ahead[0], 0.0])
+def sideways_of(task: Task) -> np.ndarray:
+    """Unit vector to the left of the way from start to goal on the map; north if the goal is straight above."""
+    way = (task.target - task.source)[:2]
+    east, north = way / np.linalg.norm(way) if way.any() else (1.0, 0.0)
+    return np.array([-north, east, 0.0])
 
 
 def arcs_between(task: Task, waypoints: int, count: int, rng: np.random.Generator) -> np.ndarray:
@@ -323,8 +322,7 @@ def arcs_between(task: Task, waypoints: int, count: int, rng: np.random.Generato
     waves = np.sin(np.pi * order[:, None] * along)
     sideways = (rng.standard_normal((count, HUMPS)) * WIDTH * distance / order) @ waves
     upwards = np.abs(rng.standard_normal((count, 1))) * HEIGHT @ waves[:1]
-    _, side = directions(task)
-    curves = straight + sideways[..., None] * side + upwards[..., None] * (0.0, 0.0, 1.0)
+    curves = straight + sideways[..., None] * sideways_of(task) + upwards[..., None] * (0.0, 0.0, 1.0)
     return np.clip(curves, 0.0, np.array(task.terrain.closed.shape) - 1e-9)
 
 
@@ -332,10 +330,7 @@ def near(task: Task, route: Route, risk_map: RiskMap, waypoints: int) -> np.ndar
     """Points with both ends (K + 2, 3) of a curve near a route, from the task's start to its goal."""
     checks.instance("initial", route, Route)
     points = (route.points - risk_map.city.origin) / risk_map.city.cell
-    if (
-        len(points) < 2
-        or max(np.abs(points[0] - task.source).max(), np.abs(points[-1] - task.target).max()) > 0.5 + 1e-9
-    ):
+    if len(points) < 2 or np.abs(points[[0, -1]] - (task.source, task.target)).max() > 0.5 + 1e-9:
         raise ValueError(f"initial must lead from start to goal, within a voxel of both, got {route!r}")
     control = task.nearest(points, waypoints + 2)
     control[0], control[-1] = task.source, task.target
@@ -344,20 +339,21 @@ def near(task: Task, route: Route, risk_map: RiskMap, waypoints: int) -> np.ndar
 
 def one_by_one(
     measure: Measure, control: np.ndarray, per_segment: int, budget: int, rng: np.random.Generator
-) -> np.ndarray:
-    """Points with both ends (K + 2, 3), the inner ones moved one at a time by a greedy beetle."""
+) -> tuple[np.ndarray, float]:
+    """Points with both ends (K + 2, 3), the inner ones moved one at a time by a greedy beetle, and what they cost."""
     space = space_of(measure.task, len(control) - 2, "points")
     found = bas(
         lambda vectors: measure(space.control(vectors), per_segment), space.bounds, budget, rng,
         start=space.vectors(control[None]), greedy=True, decay=None, block=3, antenna=REFINE_ANTENNA,
     )  # fmt: skip
-    return space.control(found.best[None])[0]
+    return space.control(found.best[None])[0], found.value
 
 
-def route_of(task: Task, control: np.ndarray, per_segment: int, risk_map: RiskMap, planner: str) -> Route:
-    """The curve as a route; not reached if it breaks a limit."""
-    city = risk_map.city
-    line = task.lines(control[None], per_segment)[0]
-    cost, broken = float(task.costs(control[None], per_segment)[0]), breaches(task, line, city.cell)
-    info = {"control": city.origin + control * city.cell}
-    return Route(city.origin + line * city.cell, planner, not broken, broken, np.inf if broken else cost, info)
+def route_of(measure: Measure, risk_map: RiskMap, planner: str) -> Route:
+    """The best curve as a route; not reached if it breaks a limit."""
+    city, task = risk_map.city, measure.task
+    line = task.lines(measure.best[None], measure.per_segment)[0]
+    broken = breaches(task, line, city.cell) if measure.least >= task.unflyable else ""
+    info = {"control": city.origin + measure.best * city.cell}
+    cost = np.inf if broken else float(measure.least)
+    return Route(city.origin + line * city.cell, planner, not broken, broken, cost, info)

@@ -182,9 +182,7 @@ def make_dataset(
         If the setting is unknown, or there are not that many hours or rows.
     """
     if isinstance(setting, str):
-        if setting not in SETTINGS:
-            raise ValueError(f"setting must be one of {', '.join(map(repr, SETTINGS))}, got {setting!r}")
-        setting = SETTINGS[setting]
+        setting = SETTINGS[checks.one_of("setting", setting, SETTINGS)]
     checks.whole("count", count, 2)
     checks.whole("train_count", train_count, 1)
     if train_count >= count:
