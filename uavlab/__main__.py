@@ -212,7 +212,7 @@ def report(
 
 def table(city: "City", route: "Route", start: np.ndarray, goal: np.ndarray) -> list[tuple[str, str]]:
     """What was planned and measured, as name and value."""
-    from uavlab.planners.grid import show
+    from uavlab.checks import show
 
     rows = [
         ("city", f"{city.name}: {' × '.join(map(str, city.shape))} voxels of {city.cell:g} m, "

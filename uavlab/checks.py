@@ -81,10 +81,25 @@ def vectors(**named: npt.ArrayLike) -> list[np.ndarray]:
     return list(arrays.values())
 
 
+def three(name: str, value: npt.ArrayLike) -> tuple[float, float, float]:
+    """A vector (east, north[, up]) as three numbers that a cache can take; without the third it is level."""
+    vector = numbers(name, value)
+    if vector.shape not in ((2,), (3,)) or not np.isfinite(vector).all():
+        raise ValueError(f"{name} must be two or three finite numbers (east, north[, up]), got {value!r}")
+    east, north, up = (*vector.tolist(), 0.0)[:3]
+    return east, north, up
+
+
+def show(point: npt.ArrayLike) -> str:
+    """A point for a message: (90.0, 18.0, 30.0)."""
+    return "(" + ", ".join(f"{coordinate:.1f}" for coordinate in np.asarray(point, dtype=float)) + ")"
+
+
 MAKERS = {
     "City": "read_city(path) reads one, a RiskMap has one as its .city",
     "RiskMap": "RiskMap(city, population_density, shelter) makes one",
     "Route": "planners give one, Route(points) makes one; several are given one by one, as in *routes",
+    "Curve": "smooth(route, city, uav) makes one",
     "UAV": "uavlab.vehicle has some",
 }
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from scipy.spatial import ConvexHull
 
 from uavlab.city.buildings import FACE_TOLERANCE, Building
-from uavlab.city.voxels import squared_clearance, voxels_on_segment
+from uavlab.city.voxels import distances_to_obstacle, squared_clearance, voxels_on_segment
 
 MOST_VOXELS = 500_000_000
 """More than this is refused: half a gigabyte for the occupancy alone."""
@@ -181,6 +181,35 @@ class City:
             tops = np.where(self.occupied, levels + self.cell / 2, self.origin[2])
             surface = np.maximum.accumulate(tops, axis=2)
         return np.where(self.occupied, 0.0, np.maximum(levels - surface, 0.0))
+
+    def distance(self, points: npt.ArrayLike, exact_within: float | None = None) -> np.ndarray:
+        """Distance from points to the nearest obstacle's surface, where `clearance` has it from centres only.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            [m]; of what lies beyond the map nothing is known, only the obstacles on it count.
+        exact_within : float, optional
+            Up to this distance [m] it is exact, by default four voxels. Beyond it is a lower bound, less than two
+            voxels too low: the clearance of the point's voxel less the way to its centre.
+
+        Returns
+        -------
+        (...) array
+            [m]; 0 in an obstacle, infinite where there is none at all.
+
+        Raises
+        ------
+        ValueError
+            If `points` hasn't shape (..., 3) or is not finite.
+        """
+        points = np.asarray(points, dtype=float)
+        if points.shape[-1:] != (3,) or not np.isfinite(points).all():
+            raise ValueError(f"points must be finite and have shape (..., 3), got shape {points.shape}")
+        cells = (points.reshape(-1, 3) - self.origin) / self.cell
+        near = 4.0 if exact_within is None else exact_within / self.cell
+        distances = distances_to_obstacle(self.occupied, self.clearance, self.cell, cells, near)
+        return self.cell * distances.reshape(points.shape[:-1])
 
     def blocked(self, min_clearance: float) -> np.ndarray:
         """Where a UAV may not be: obstacles, and what is nearer to them than a distance.

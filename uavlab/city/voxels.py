@@ -118,3 +118,41 @@ def voxels_on_segment(start, end):
             if crossing[axis] <= face + ROUNDING:
                 voxel[axis] += step[axis]
                 crossing[axis] += between[axis]
+
+
+@compiled
+def distance_to_obstacle(occupied, clearance, cell, point, exact_within):
+    """Distance [cells] from a point (3,) [cells] to the nearest occupied voxel; see `City.distance`.
+
+    `clearance` is that of the voxels' centres [m], `cell` their edge [m], `exact_within` in cells.
+    """
+    nx, ny, nz = occupied.shape
+    x, y, z = point
+    i = min(max(math.floor(x), 0), nx - 1)
+    j = min(max(math.floor(y), 0), ny - 1)
+    k = min(max(math.floor(z), 0), nz - 1)
+    off = math.sqrt((x - i - 0.5) ** 2 + (y - j - 0.5) ** 2 + (z - k - 0.5) ** 2)
+    from_centre = clearance[i, j, k] / cell
+    if from_centre - off >= exact_within:
+        return from_centre - off
+    least = from_centre + off
+    reach = math.ceil(least)
+    for a in range(max(math.floor(x) - reach, 0), min(math.floor(x) + reach + 1, nx)):
+        dx = max(a - x, 0.0, x - a - 1)
+        for b in range(max(math.floor(y) - reach, 0), min(math.floor(y) + reach + 1, ny)):
+            dy = max(b - y, 0.0, y - b - 1)
+            if dx * dx + dy * dy >= least * least:
+                continue
+            for c in range(max(math.floor(z) - reach, 0), min(math.floor(z) + reach + 1, nz)):
+                if occupied[a, b, c]:
+                    dz = max(c - z, 0.0, z - c - 1)
+                    least = min(least, math.sqrt(dx * dx + dy * dy + dz * dz))
+    return least
+
+
+@compiled
+def distances_to_obstacle(occupied, clearance, cell, points, exact_within):
+    distances = np.empty(len(points))
+    for n in range(len(points)):
+        distances[n] = distance_to_obstacle(occupied, clearance, cell, points[n], exact_within)
+    return distances

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.compiled import compiled
-from uavlab.planners.grid import BOXES, LENGTHS, blocked_around_node, show, steps_of
+from uavlab.planners.grid import BOXES, LENGTHS, blocked_around_node, steps_of
 from uavlab.planners.least_risk import (
     MAX_PITCH,
     MAX_TURN,
@@ -185,7 +185,7 @@ def ant_colony(
         info["pheromone"] = np.array(searches[0].pheromone).reshape(-1, *risk_map.city.shape)
     city, nodes = risk_map.city, joined(pieces)
     if len(nodes) == 0:
-        reason = f"none of {len(walked)} ants arrived from {show(start)} at {show(goal)}: "
+        reason = f"none of {len(walked)} ants arrived from {checks.show(start)} at {checks.show(goal)}: "
         if len(solve(query, True)[0]) == 0:
             reason += f"there is no way; {what_binds(risk_map, query, limits, None)}"
         else:

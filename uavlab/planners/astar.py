@@ -22,7 +22,6 @@ from uavlab.planners.grid import (
     checked_price,
     distance_left,
     endpoints,
-    show,
     steps_of,
 )
 from uavlab.planners.heap import open_list, pop, push, room
@@ -139,7 +138,8 @@ def cheapest_route(
     if parent[last] == UNSEEN:
         reach = np.count_nonzero(parent)
         start, goal = city.center_of(city.index_of([source, target]))
-        reason = f"no free way from {show(start)} to {show(goal)}: all {reach} voxels within reach were searched"
+        ends = f"from {checks.show(start)} to {checks.show(goal)}"
+        reason = f"no free way {ends}: all {reach} voxels within reach were searched"
         return Route(np.empty((0, 3)), "A*", reached=False, reason=reason, cost=np.inf, info=info)
     nodes = trace(parent, first, last, city.shape)
     cost = float(g[last]) * city.cell

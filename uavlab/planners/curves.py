@@ -15,7 +15,7 @@ from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
 from uavlab.planners.least_risk import Limits, flyable_endpoints, query_of
 from uavlab.risk import RiskMap
-from uavlab.spline import cubic_bspline, fitted, spread, subdivided
+from uavlab.spline.basis import cubic_bspline, fitted, spread, subdivided
 
 PER_SEGMENT = 8
 """Straight legs by which a segment of a curve is drawn and measured."""

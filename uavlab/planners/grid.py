@@ -105,11 +105,11 @@ def node_at(
     if position.shape != (3,):
         raise ValueError(f"{argument} must be three numbers (x, y, z) in metres, got shape {position.shape}")
     if not np.isfinite(position).all():
-        raise ValueError(f"{argument} must be finite, got {show(position)}")
+        raise ValueError(f"{argument} must be finite, got {checks.show(position)}")
     if not city.inside(position):
         low, high = city.bounds
         ranges = ", ".join(f"{a} {lo:g} to {hi:g}" for a, lo, hi in zip("xyz", low, high, strict=True))
-        raise ValueError(f"{argument} {show(position)} lies outside of the map: {ranges} m")
+        raise ValueError(f"{argument} {checks.show(position)} lies outside of the map: {ranges} m")
     index = tuple(city.cell_of(position))
     blocked = city.blocked(min_clearance)
     if city.occupied[index]:
@@ -120,7 +120,7 @@ def node_at(
     else:
         return int(city.code_of(index))
     allowed = ~blocked if flyable is None else flyable & ~blocked
-    raise ValueError(f"{argument} {show(position)} {wrong}; {nearest_allowed(city, position, allowed)}")
+    raise ValueError(f"{argument} {checks.show(position)} {wrong}; {nearest_allowed(city, position, allowed)}")
 
 
 def nearest_allowed(city: City, position: np.ndarray, allowed: np.ndarray) -> str:
@@ -134,7 +134,7 @@ def nearest_allowed(city: City, position: np.ndarray, allowed: np.ndarray) -> st
         away = np.linalg.norm(centers - position, axis=1)
         whole_map = (high - low == city.shape).all()
         if away.min(initial=np.inf) < (np.inf if whole_map else radius * city.cell):
-            return f"the nearest free point is {show(centers[away.argmin()])}"
+            return f"the nearest free point is {checks.show(centers[away.argmin()])}"
         if whole_map:
             return "no voxel of the map is free"
         radius *= 2
@@ -155,7 +155,7 @@ def endpoints(
     )
     if codes[0] == codes[1]:
         raise ValueError(
-            f"start {show(start)} and goal {show(goal)} lie in the same voxel: "
+            f"start {checks.show(start)} and goal {checks.show(goal)} lie in the same voxel: "
             f"there is no route to plan; choose a goal at least one cell ({city.cell:g} m) away"
         )
     return codes
@@ -170,17 +170,3 @@ def checked_price(city: City, price: npt.ArrayLike) -> tuple[np.ndarray, float]:
     if not 0 <= cheapest <= checked.max() < np.inf:  # NaN fails too
         raise ValueError("price must be finite and at least 0 everywhere; use min_clearance to forbid voxels")
     return checked, cheapest
-
-
-def three(name: str, value: npt.ArrayLike) -> tuple[float, float, float]:
-    """A vector (east, north[, up]) as three numbers that a cache can take; without the third it is level."""
-    vector = checks.numbers(name, value)
-    if vector.shape not in ((2,), (3,)) or not np.isfinite(vector).all():
-        raise ValueError(f"{name} must be two or three finite numbers (east, north[, up]), got {value!r}")
-    east, north, up = (*vector.tolist(), 0.0)[:3]
-    return east, north, up
-
-
-def show(point: npt.ArrayLike) -> str:
-    """A point for a message: (90.0, 18.0, 30.0)."""
-    return "(" + ", ".join(f"{coordinate:.1f}" for coordinate in np.asarray(point, dtype=float)) + ")"

@@ -15,7 +15,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.offsets import crossing_rate
 from uavlab.planners.astar import cheapest_route
-from uavlab.planners.grid import endpoints, three
+from uavlab.planners.grid import endpoints
 from uavlab.planners.shortcut import shortcut
 from uavlab.route import Route
 
@@ -66,7 +66,7 @@ def hazard_price(
         checks.positive_number(name, value)
     for name, value in (("uav_radius", uav_radius), ("crash_price", crash_price)):
         checks.not_negative_number(name, value)
-    mean = three("mean_offset", mean_offset)
+    mean = checks.three("mean_offset", mean_offset)
     return cached_price(city, float(sigma), float(uav_radius), mean, float(crash_price * natural_frequency / speed))
 
 

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.compiled import compiled
 from uavlab.planners.astar import ROUNDING, TIE_BREAK
-from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around_node, endpoints, nearest_allowed, show, steps_of
+from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around_node, endpoints, nearest_allowed, steps_of
 from uavlab.planners.heap import open_list, pop, push, room
 from uavlab.risk import RiskMap
 from uavlab.risk.model import heights_above_ground, high_enough
@@ -116,7 +116,8 @@ def least_risk(
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
     name = "least risk" if length == threat == 0 else "shortest" if risk == threat == 0 else "least cost"
     if len(nodes) == 0:
-        reason = f"no route from {show(start)} to {show(goal)}: {what_binds(risk_map, query, limits, max_length)}"
+        ends = f"from {checks.show(start)} to {checks.show(goal)}"
+        reason = f"no route {ends}: {what_binds(risk_map, query, limits, max_length)}"
         return Route(np.empty((0, 3)), name, reached=False, reason=reason, cost=np.inf, info=info)
     city = risk_map.city
     return Route(city.center_of(city.index_of(nodes)), name, cost=cost, info=info)
@@ -257,7 +258,7 @@ def flyable_endpoints(
             above = city.height_above_surface.flat[code]
             allowed = risk_map.flyable & ~city.blocked(min_clearance)
             raise ValueError(
-                f"{name} {show(point)} is too low: its voxel's centre is {above:.1f} m above what lies below, "
+                f"{name} {checks.show(point)} is too low: its voxel's centre is {above:.1f} m above what lies below, "
                 f"safe_height asks for {risk_map.safe_height:g} m and lowest_height for {risk_map.lowest_height:g} m "
                 f"above the ground; {nearest_allowed(city, np.asarray(point, float), allowed)}"
             )

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.compiled import compiled
-from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, endpoints, show
+from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, endpoints
 from uavlab.planners.shortcut import line_cost
 from uavlab.route import Route
 
@@ -118,7 +118,8 @@ def potential_field(
     if record:
         pulls, pushes, _ = forces_at(field, points - city.origin)
         info |= {"attraction": pulls, "repulsion": pushes}
-    reason = REASONS[outcome].format(place=show(points[-1]), left=np.linalg.norm(points[-1] - aim), steps=max_steps)
+    place = checks.show(points[-1])
+    reason = REASONS[outcome].format(place=place, left=np.linalg.norm(points[-1] - aim), steps=max_steps)
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     cost = np.inf if reason else length
     return Route(points, "potential field", reached=not reason, reason=reason, cost=cost, info=info)

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.planners.astar import astar, cheapest_route, penalty_zone
-from uavlab.planners.grid import endpoints, nearest_allowed, show, three
+from uavlab.planners.grid import endpoints, nearest_allowed
 from uavlab.planners.potential_field import repulsion
 from uavlab.resilience import (
     DISTURBANCES,
@@ -128,7 +128,7 @@ def repare(
     _, target = endpoints(city, start, goal)
     if now.grounded:
         return Route(np.empty((0, 3)), "REPARE", reached=False, reason=f"grounded: {now.grounded}", cost=np.inf)
-    widening = (0.0, 0.0, 0.0) if as_printed else three("mean_offset", mean_offset)
+    widening = (0.0, 0.0, 0.0) if as_printed else checks.three("mean_offset", mean_offset)
     for name, point in (("start", start), ("goal", goal)):
         refuse_swallowed(city, name, point, now.safe_distance, widening)
 
@@ -176,7 +176,7 @@ def replanned(
         now = then
         plans.append(Plan(clock, tuple(flown[-1].tolist()), now.name, now.safe_distance))
         if now.grounded:
-            reason = f"grounded after {clock:.1f} s at {show(flown[-1])}: {now.grounded}"
+            reason = f"grounded after {clock:.1f} s at {checks.show(flown[-1])}: {now.grounded}"
             return replace(named(route, flown, plans), reached=False, reason=reason, cost=np.inf)
         route = plan(flown[-1], now)
         expanded += route.info["expanded"]
@@ -198,8 +198,8 @@ def refuse_swallowed(
             instead = nearest_allowed(city, np.asarray(point, dtype=float), outside)
         needed = f"D_min of {safe_distance:g} m" + (f" and {widened:.2f} m of mean offset" if widened else "")
         raise ValueError(
-            f"{name} {show(point)} is {city.clearance[index]:.2f} m from the nearest obstacle, {short:.2f} m nearer "
-            f"than {needed}; {instead}"
+            f"{name} {checks.show(point)} is {city.clearance[index]:.2f} m from the nearest obstacle, {short:.2f} m "
+            f"nearer than {needed}; {instead}"
         )
 
 
@@ -252,7 +252,7 @@ def flight_conditions(
         kind, speed = checks.one_of(argument, disturbance, DISTURBANCES), DISTURBANCES[disturbance]
         name = f"{load} load, {kind} disturbance"
     else:
-        wind = three(f"{argument}, if no class, [m/s]", disturbance)
+        wind = checks.three(f"{argument}, if no class, [m/s]", disturbance)
         speed = float(np.linalg.norm(wind))
         kind = disturbance_class(speed)
         name = f"{load} load, wind {speed:.1f} m/s ({kind} disturbance)"
@@ -306,7 +306,7 @@ def repare_price(
     for name, weight in zip(("penalty", "force_weight", "load_weight"), weights, strict=True):
         checks.not_negative_number(name, weight)
     penalty, force_weight, load_weight = (float(weight) for weight in weights)
-    offset = three("mean_offset", mean_offset)
+    offset = checks.three("mean_offset", mean_offset)
     return cached_price(city, for_conditions, offset, (penalty, force_weight, load_weight), shape)
 
 

@@ -11,10 +11,11 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from uavlab import checks
 from uavlab.city import City
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
-from uavlab.planners.grid import checked_price, show
+from uavlab.planners.grid import checked_price
 from uavlab.route import Route
 
 ROUNDING = 1e-9
@@ -54,8 +55,8 @@ def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, mi
     if not np.isfinite(best).all():
         leg = int(np.flatnonzero(~np.isfinite(best))[0])
         raise ValueError(
-            f"route passes through a blocked voxel between waypoints {leg - 1} {show(route.points[leg - 1])} "
-            f"and {leg} {show(route.points[leg])}: shorten only routes that themselves keep "
+            f"route passes through a blocked voxel between waypoints {leg - 1} {checks.show(route.points[leg - 1])} "
+            f"and {leg} {checks.show(route.points[leg])}: shorten only routes that themselves keep "
             f"min_clearance={min_clearance:g} m"
         )
     kept = [len(points) - 1]

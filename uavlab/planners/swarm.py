@@ -18,7 +18,6 @@ from uavlab.optimizers import Result, bas, pso, pso_bas
 from uavlab.optimizers.particle_swarm import SWARM
 from uavlab.planners.ant_colony import ANTS, ant_colony
 from uavlab.planners.curves import PER_SEGMENT, Measure, Task, breaches, task_of
-from uavlab.planners.grid import show
 from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN, checked_limits, price_per_cell
 from uavlab.risk import RiskMap
 from uavlab.route import Route
@@ -173,7 +172,7 @@ def waypoint_swarm(
         "elapsed": time.perf_counter() - began,
     }
     if not route.reached:
-        reason = f"the best of {measure.made} curves from {show(start)} to {show(goal)} {route.reason}"
+        reason = f"the best of {measure.made} curves from {checks.show(start)} to {checks.show(goal)} {route.reason}"
         return replace(route, points=np.empty((0, 3)), reason=reason, info=info)
     return replace(route, info=info)
 

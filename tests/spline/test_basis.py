@@ -1,4 +1,4 @@
-"""B-splines: against SciPy's, and the laws that every such curve obeys."""
+"""The basis of B-splines: against SciPy's, and the laws that every such curve obeys."""
 
 import re
 
@@ -195,9 +195,9 @@ def test_fitted_to_points_that_stand_still_stays_there():
 @pytest.mark.parametrize(
     ("control", "message"),
     [
-        ([[0, 0, 0]], "control must be at least two points, shape (N, D), got shape (1, 3)"),
-        ([0, 1, 2], "control must be at least two points, shape (N, D), got shape (3,)"),
-        (np.zeros((4, 1, 3)), "control must be at least two points, shape (N, D), got shape (4, 1, 3)"),
+        ([[0, 0, 0]], "control must be at least 2 points, shape (..., N, D), as a cubic segment takes four; ends="),
+        ([0, 1, 2], "got shape (3,)"),
+        (np.zeros((4, 1, 3)), "got shape (4, 1, 3)"),
         ([[0, 0], [np.nan, 0]], "control must be finite, got nan"),
         ([[0, 0], [0, np.inf]], "control must be finite, got inf"),
         ([["a", "b"], ["c", "d"]], "control must be a number or an array of numbers"),

@@ -1,0 +1,191 @@
+"""Uniform cubic B-splines by their matrix form, and B-splines of any degree by the recursion of their basis."""
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+
+BASIS = np.array([[-1.0, 3.0, -3.0, 1.0], [3.0, -6.0, 3.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [1.0, 4.0, 1.0, 0.0]]) / 6.0
+"""From the powers of t (rows: t³, t², t, 1) to the weights of four control points (columns)."""
+
+POWERS = np.array([[3, 2, 1, 0], [2, 1, 0, 0], [1, 0, 0, 0]])
+FACTORS = np.array([[1, 1, 1, 1], [3, 2, 1, 0], [6, 2, 0, 0]])
+"""Of t³, t², t, 1 and of their first and second derivatives."""
+
+ENDS = ("phantom", "clamped", "none")
+
+
+def cubic_bspline(
+    control: npt.ArrayLike, per_segment: int = 8, *, ends: str = "phantom", derivative: int = 0
+) -> np.ndarray:
+    """Points of the uniform cubic B-spline, or derivatives there (RISK-ACO Eq. 19, PSO-BAS Eq. 25).
+
+    S_i(t) = [t³ t² t 1]·M·[P_i … P_i+3]ᵀ/6, 0 ≤ t ≤ 1. Printed is P_0 … P_3 in every segment, which draws only one.
+    And as the papers have it, with ends="none", the curve misses its ends: it begins at (P_0 + 4P_1 + P_2)/6.
+
+    Parameters
+    ----------
+    control : (..., N, D) array
+        Control points; several curves at once if there are more axes.
+    per_segment : int
+        Points on each segment.
+    ends : {"phantom", "clamped", "none"}
+        "phantom": a point 2P_0 − P_1 before the first, and likewise after the last; the curve passes through both,
+        unbent; N ≥ 2, N − 1 segments. "clamped": each end stands three times; the curve passes through both, its
+        parameter starts from rest; N ≥ 2, N + 1 segments. "none": N ≥ 4, N − 3 segments.
+    derivative : {0, 1, 2}
+        With respect to t, one per segment.
+
+    Returns
+    -------
+    (..., segments·per_segment + 1, D) array
+
+    Raises
+    ------
+    ValueError
+        If there are too few control points, one is not finite, or another argument is out of its range.
+    """
+    points = checks.numbers("control", control)
+    checks.whole("per_segment", per_segment, least=1)
+    checks.one_of("ends", ends, ENDS)
+    if derivative not in (0, 1, 2):
+        raise ValueError(f"derivative must be 0, 1 or 2, got {derivative!r}")
+    checked_count(points, ends)
+    checks.finite("control", points)
+    padded = with_ends(points, ends)
+    segments = padded.shape[-2] - 3
+    t = (np.arange(per_segment) / per_segment)[:, None]
+    windows = np.stack([padded[..., i : i + segments, :] for i in range(4)], axis=-2)
+    weights = FACTORS[derivative] * t ** POWERS[derivative] @ BASIS
+    curve = (weights @ windows).reshape(*points.shape[:-2], segments * per_segment, points.shape[-1])
+    if derivative == 0 and ends != "none":
+        last = points[..., -1:, :]  # without rounding
+    else:
+        last = (FACTORS[derivative] @ BASIS @ windows[..., -1, :, :])[..., None, :]
+    return np.concatenate([curve, last], axis=-2)
+
+
+def checked_count(points: np.ndarray, ends: str) -> None:
+    """`ValueError` if there are too few control points for one segment, which takes four."""
+    least, added = (4, "") if ends == "none" else (2, f"; ends={ends!r} adds the others")
+    if points.ndim < 2 or points.shape[-2] < least:
+        raise ValueError(
+            f"control must be at least {least} points, shape (..., N, D), as a cubic segment takes four{added}; "
+            f"got shape {points.shape}"
+        )
+
+
+def with_ends(points: np.ndarray, ends: str) -> np.ndarray:
+    """Control points with those that hold the curve to its ends."""
+    first, last = points[..., :1, :], points[..., -1:, :]
+    if ends == "phantom":
+        return np.concatenate([2 * first - points[..., 1:2, :], points, 2 * last - points[..., -2:-1, :]], axis=-2)
+    if ends == "clamped":
+        return np.concatenate([first, first, points, last, last], axis=-2)
+    return points
+
+
+def basis_functions(t: npt.ArrayLike, knots: npt.ArrayLike, degree: int = 3, *, as_printed: bool = False) -> np.ndarray:
+    """All B-spline basis functions of a degree, by the recursion of Cox and de Boor (PSO-BAS Eqs 23-24).
+
+    Parameters
+    ----------
+    t : (T,) array
+        Parameters, within the knots.
+    knots : (K,) array
+        Not falling; K − degree − 1 basis functions.
+    degree : int
+        p, at least 0; the curve then has order p + 1. The papers call B_{i,n} "of order n and degree n − 1", but
+        their recursion makes degree n.
+    as_printed : bool
+        Intervals closed on both sides (Eq. 23): at a knot two of them count, and the functions add up to 2.
+
+    Returns
+    -------
+    (T, K − degree − 1) array
+        Each row adds up to 1 where degree + 1 functions overlap; the last interval is closed, so the end belongs to it.
+
+    Raises
+    ------
+    ValueError
+        If the knots fall or are too few, or a parameter lies beyond them.
+    """
+    t, knots = checks.numbers("t", t), checks.numbers("knots", knots)
+    checks.whole("degree", degree, least=0)
+    checks.finite("knots", knots)
+    if knots.ndim != 1 or len(knots) < degree + 2 or (np.diff(knots) < 0).any() or knots[0] == knots[-1]:
+        raise ValueError(
+            f"knots must be at least {degree + 2} numbers that rise, some of them may be equal; got {knots!r:.80}"
+        )
+    checks.within("t", t, knots[0], knots[-1], "(the knots)")
+    t = np.atleast_1d(t)[:, None]
+    low, high = knots[:-1], knots[1:]
+    inside = (t >= low) & (t <= high) if as_printed else (t >= low) & (t < high)
+    if not as_printed:
+        last = np.flatnonzero(high > low)[-1]
+        inside[:, last] |= t[:, 0] == high[last]
+    values = (inside & (high > low)).astype(float)
+    for n in range(1, degree + 1):
+        rise, fall = knots[n:-1] - knots[: -n - 1], knots[n + 1 :] - knots[1:-n]
+        up = np.divide(t - knots[: -n - 1], rise, out=np.zeros((len(t), len(rise))), where=rise > 0)
+        down = np.divide(knots[n + 1 :] - t, fall, out=np.zeros((len(t), len(fall))), where=fall > 0)
+        values = up * values[:, :-1] + down * values[:, 1:]
+    return values
+
+
+def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.ndarray:
+    """A clamped uniform B-spline of any degree at parameters t from 0 to 1 (PSO-BAS Eq. 22).
+
+    Its knots are even, but for the first and the last, which stand degree + 1 times: it passes through both ends.
+
+    Parameters
+    ----------
+    control : (N, D) array
+        N > degree.
+    t : (T,) array
+        From 0 to 1.
+    degree : int
+        1 is the polyline.
+
+    Returns
+    -------
+    (T, D) array
+
+    Raises
+    ------
+    ValueError
+        If there are too few control points, or a parameter is not from 0 to 1.
+    """
+    points = checks.numbers("control", control)
+    checks.whole("degree", degree, least=1)
+    checks.finite("control", points)
+    if points.ndim != 2 or len(points) <= degree:
+        raise ValueError(f"control must be more than {degree} points of shape (N, D), got shape {points.shape}")
+    inner = np.linspace(0.0, 1.0, len(points) - degree + 1)
+    knots = np.concatenate([np.zeros(degree), inner, np.ones(degree)])
+    return basis_functions(t, knots, degree) @ points
+
+
+def subdivided(control: np.ndarray) -> np.ndarray:
+    """Control points (2N − 1, D) of the same curve, twice as dense (Lane and Riesenfeld 1980)."""
+    finer = np.empty((2 * len(control) - 1, control.shape[1]))
+    finer[0::2] = control
+    finer[2:-1:2] = (control[:-2] + 6 * control[1:-1] + control[2:]) / 8
+    finer[1::2] = (control[:-1] + control[1:]) / 2
+    return finer
+
+
+def fitted(points: np.ndarray, count: int) -> np.ndarray:
+    """`count` control points of the B-spline nearest to a line of points (M, D), by least squares; the ends stay."""
+    wanted = spread(points, 8 * (count - 1) + 1)
+    basis = cubic_bspline(np.eye(count), per_segment=8)
+    rest = wanted - basis[:, [0, -1]] @ points[[0, -1]]
+    inner = np.linalg.lstsq(basis[:, 1:-1], rest, rcond=None)[0]
+    return np.vstack([points[:1], inner, points[-1:]])
+
+
+def spread(points: np.ndarray, count: int) -> np.ndarray:
+    """`count` points at even distances along a line of points (M, D), from its first to its last."""
+    distance = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    along = np.linspace(0.0, 1.0, count)
+    return np.stack([np.interp(along * distance[-1], distance, axis) for axis in points.T], axis=1)

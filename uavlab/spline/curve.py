@@ -1,0 +1,231 @@
+"""A curve and what can be measured on it: length, curvature, pitch, and how near it comes to the buildings."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.route import Route
+from uavlab.spline.basis import BASIS, FACTORS, POWERS, checked_count, with_ends
+from uavlab.vehicle import GRAVITY
+
+AT_REST = 1e-9
+"""A curve that runs fewer metres than this per segment stands still."""
+
+
+def curvature(velocity: npt.ArrayLike, acceleration: npt.ArrayLike) -> np.ndarray:
+    """Curvature κ = |r′ × r″|/|r′|³ of a curve r(t): one over the radius of the circle that fits best there.
+
+    Parameters
+    ----------
+    velocity, acceleration : (..., 3) or (..., 2) arrays
+        First and second derivative by any parameter t. With east and north only: the curvature of the plan.
+
+    Returns
+    -------
+    (...) array
+        κ [1/m]; NaN where the curve stands still.
+
+    Raises
+    ------
+    ValueError
+        If they are not finite vectors with two or three components.
+    """
+    first, second = checks.vectors(velocity=velocity, acceleration=acceleration)
+    speed = np.linalg.norm(first, axis=-1)
+    moving = speed > AT_REST
+    tangent = first / np.where(moving, speed, 1.0)[..., None]
+    across = second - (second * tangent).sum(axis=-1, keepdims=True) * tangent
+    bend = np.linalg.norm(across, axis=-1) / np.where(moving, speed, 1.0) ** 2
+    return np.where(moving, bend, np.nan)
+
+
+def allowed_speed(curvature: npt.ArrayLike, bank: float = np.radians(30.0)) -> np.ndarray:
+    """Greatest speed √(g·tan(bank)/κ) at which a bank angle holds a level turn.
+
+    Parameters
+    ----------
+    curvature : float or array
+        κ of the plan [1/m], at least 0; infinite at a corner.
+    bank : float
+        [rad], between 0 and π/2; 30° is usual for multirotors.
+
+    Returns
+    -------
+    float or array
+        [m/s]; infinite on a straight line.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    values = checks.numbers("curvature", curvature)
+    checks.refuse(values, values >= 0, "curvature must be at least 0")
+    checks.number("bank", bank)
+    checks.within("bank", bank, 1e-6, np.pi / 2 - 1e-6, "rad (from degrees: numpy.radians)")
+    with np.errstate(divide="ignore"):
+        return np.sqrt(GRAVITY * np.tan(bank) / values)
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A cubic B-spline in space, and what can be measured on it.
+
+    Attributes
+    ----------
+    control : (N, 3) array
+        Control points [m], N ≥ 2.
+    ends : {"phantom", "clamped"}
+        How it is held to its ends, see `cubic_bspline`.
+    step : float
+        At most so far apart [m] are the points at which it is measured.
+    planner : str
+        Whose route it smooths.
+    info : dict
+        What `smooth` noted.
+
+    Raises
+    ------
+    ValueError
+        If the control points haven't shape (N, 3), are too few or not finite, or another attribute is out of range.
+    """
+
+    control: np.ndarray
+    ends: str = "phantom"
+    step: float = 0.1
+    planner: str = "curve"
+    info: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        control = checks.numbers("control", self.control).copy()
+        checked_count(control, checks.one_of("ends", self.ends, ("phantom", "clamped")))
+        if control.ndim != 2 or control.shape[1] != 3:
+            raise ValueError(f"control must have shape (N, 3), got {control.shape}")
+        checks.finite("control", control)
+        checks.positive_number("step", self.step)
+        object.__setattr__(self, "control", control)
+
+    def __repr__(self) -> str:
+        return f"<Curve by {self.planner}: {self.length:.1f} m, {len(self.control)} control points>"
+
+    @cached_property
+    def parameter(self) -> np.ndarray:
+        """Parameters (P,) of its points, from 0, one per segment, so near each other that no arc exceeds `step`.
+
+        Its derivative is a mean of three legs of the polygon, so it never runs faster than the longest of them.
+        """
+        legs = np.linalg.norm(np.diff(with_ends(self.control, self.ends), axis=0), axis=1)
+        fastest = np.max([legs[:-2], legs[1:-1], legs[2:]], axis=0)
+        parts = np.maximum(np.ceil(fastest / self.step).astype(int), 1)
+        inner = [i + np.arange(count) / count for i, count in enumerate(parts)]
+        return np.concatenate([*inner, [float(len(parts))]])
+
+    def at(self, parameter: npt.ArrayLike, derivative: int = 0) -> np.ndarray:
+        """Points (..., 3) [m] at parameters from 0 to the number of segments, or derivatives by the parameter."""
+        padded = with_ends(self.control, self.ends)
+        where = checks.numbers("parameter", parameter)
+        checks.within("parameter", where, 0.0, len(padded) - 3, "(segments)")
+        segment = np.minimum(where.astype(int), len(padded) - 4)
+        weights = FACTORS[derivative] * (where - segment)[..., None] ** POWERS[derivative] @ BASIS
+        windows = padded[segment[..., None] + np.arange(4)]
+        return (weights[..., None] * windows).sum(axis=-2)
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """(P, 3) [m], from the first control point to the last."""
+        points = self.at(self.parameter)
+        points[[0, -1]] = self.control[[0, -1]]
+        return points
+
+    @cached_property
+    def distance(self) -> np.ndarray:
+        """Distance flown to each point, (P,) [m]."""
+        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))])
+
+    @property
+    def length(self) -> float:
+        """[m]"""
+        return float(self.distance[-1])
+
+    @cached_property
+    def tangent(self) -> np.ndarray:
+        """Unit vectors along the curve at each point, (P, 3); where it stands still, towards the next point."""
+        velocity = self.at(self.parameter, 1)
+        speed = np.linalg.norm(velocity, axis=1)
+        steps = np.diff(self.points, axis=0)
+        ahead = np.concatenate([steps, steps[-1:]])
+        direction = np.where(speed[:, None] > AT_REST, velocity, ahead)
+        return direction / np.maximum(np.linalg.norm(direction, axis=1, keepdims=True), 1e-300)
+
+    @cached_property
+    def bend(self) -> np.ndarray:
+        """Curvature vectors at each point, (P, 3) [1/m]: towards the inside of the turn, κ long; infinite at a corner.
+
+        A corner is where the curve stands still and goes on in another direction, as at a point that stands three
+        times.
+        """
+        velocity, second = self.at(self.parameter, 1), self.at(self.parameter, 2)
+        speed = np.linalg.norm(velocity, axis=1)
+        moving = speed > AT_REST
+        across = second - (second * self.tangent).sum(axis=1, keepdims=True) * self.tangent
+        bend = np.where(moving[:, None], across, 0.0) / np.where(moving, speed, 1.0)[:, None] ** 2
+        before = np.concatenate([self.tangent[:1], self.tangent[:-1]])
+        turned = np.linalg.norm(self.tangent - before, axis=1) > 1e-6
+        at_end = np.isin(np.arange(len(speed)), (0, len(speed) - 1))
+        corner = ~moving & turned & ~at_end
+        bend[corner] = (self.tangent - before)[corner] * np.inf
+        return np.nan_to_num(bend, nan=0.0, posinf=np.inf, neginf=-np.inf)
+
+    @cached_property
+    def curvature(self) -> np.ndarray:
+        """κ at each point, (P,) [1/m]."""
+        return np.linalg.norm(self.bend, axis=1)
+
+    @property
+    def level_curvature(self) -> np.ndarray:
+        """Level part of the curvature vector at each point, (P,) [1/m]: what a bank angle has to hold."""
+        return np.hypot(self.bend[:, 0], self.bend[:, 1])
+
+    @cached_property
+    def pitch(self) -> np.ndarray:
+        """Climb angle at each point, (P,) [rad]."""
+        return np.arctan2(self.tangent[:, 2], np.hypot(self.tangent[:, 0], self.tangent[:, 1]))
+
+    @cached_property
+    def sagitta(self) -> np.ndarray:
+        """How far the curve can be from the straight lines between its points, (P − 1,) [m]: max|r″|·Δt²/8."""
+        second = np.linalg.norm(self.at(self.parameter, 2), axis=1)
+        return np.maximum(second[:-1], second[1:]) * np.diff(self.parameter) ** 2 / 8  # r″ is linear in between
+
+    def least_distances(self, city: City, exact_within: float | None = None) -> np.ndarray:
+        """A lower bound of the distance to the obstacles between each two of its points, (P − 1,) [m].
+
+        See `City.distance` for `exact_within`.
+        """
+        checks.instance("city", city, City)
+        return between(self.points, self.sagitta, city, exact_within)
+
+    def clearance(self, city: City) -> float:
+        """A lower bound of its least distance to the obstacles [m], too low by less than a hundredth of `step`."""
+        return float(self.least_distances(city).min())
+
+    def route(self) -> Route:
+        """The curve as straight lines between its points."""
+        return Route(self.points, self.planner)
+
+
+def between(points: np.ndarray, sagitta: np.ndarray, city: City, exact_within: float | None = None) -> np.ndarray:
+    """A lower bound of the distance to the obstacles between points (P, 3) of a curve, (P − 1,) [m].
+
+    On a straight line of length a, an end of it is at most a/2 from the foot of the perpendicular from an obstacle,
+    hence √(d² − a²/4); the curve leaves the line by its sagitta.
+    """
+    distance = city.distance(points, exact_within)
+    nearer = np.minimum(distance[:-1], distance[1:])
+    apart = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return np.maximum(np.sqrt(np.maximum(nearer**2 - apart**2 / 4, 0.0)) - sagitta, 0.0)
