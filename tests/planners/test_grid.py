@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.graph import MCP_Geometric
 
+from uavlab import checks
 from uavlab.city import City
 from uavlab.planners import astar, potential_field, repare
 from uavlab.planners.grid import (
@@ -21,7 +22,6 @@ from uavlab.planners.grid import (
     distance_left,
     endpoints,
     node_at,
-    show,
 )
 from uavlab.risk import CAMPUS_FLIGHT, reference_campus
 
@@ -186,7 +186,7 @@ def test_prices_become_floats_of_the_city_s_shape():
 
 
 def test_points_in_messages_have_one_decimal():
-    assert show((90, 18.04, -0.5)) == "(90.0, 18.0, -0.5)"
+    assert checks.show((90, 18.04, -0.5)) == "(90.0, 18.0, -0.5)"
 
 
 def test_a_risk_map_is_not_a_city():
