@@ -96,6 +96,9 @@ def show(point: npt.ArrayLike) -> str:
 
 
 MAKERS = {
+    "Autopilot": "Autopilot() is the usual one",
+    "Flight": "fly(route, city, uav, disturbance, rng=...) makes one",
+    "Flights": "monte_carlo(route, city, uav, disturbance, rng=...) makes some",
     "City": "read_city(path) reads one, a RiskMap has one as its .city",
     "RiskMap": "RiskMap(city, population_density, shelter) makes one",
     "Route": "planners give one, Route(points) makes one; several are given one by one, as in *routes",

@@ -35,6 +35,8 @@ class UAV:
         Airspeed on missions and at most [m/s].
     max_tilt : float
         Greatest tilt of the rotor plane [rad].
+    rotor_area : float
+        Area of all rotor discs together [m²]; four of 25 cm across have 0.2.
     payload : float
         Load carried [kg].
     name : str
@@ -53,6 +55,7 @@ class UAV:
     cruise_speed: float
     top_speed: float
     max_tilt: float = np.radians(35.0)
+    rotor_area: float = 0.2
     payload: float = 0.0
     name: str = "UAV"
 
@@ -117,10 +120,11 @@ RISK_QUADROTOR = UAV(
     diameter=0.4,
     cruise_speed=16.0,
     top_speed=20.0,
+    rotor_area=0.18,
     name="1.38 kg quadrotor of PSO-BAS Table 2",
 )
 """Mass, radius 0.2 m, speed 16 m/s, C = 0.3 and A = 0.0188 m² from PSO-BAS Table 2, where C·A is that of the wreck
-in free fall; thrust about twice the weight and the top speed are ours, usual for the class."""
+in free fall; thrust about twice the weight, the top speed and rotors of 24 cm are ours, usual for the class."""
 
 LIGHT_QUADROTOR = UAV(
     mass=1.5,

@@ -190,8 +190,8 @@ class City:
         points : (..., 3) array
             [m]; of what lies beyond the map nothing is known, only the obstacles on it count.
         exact_within : float, optional
-            Up to this distance [m] it is exact, by default four voxels. Beyond it is a lower bound, less than two
-            voxels too low: the clearance of the point's voxel less the way to its centre.
+            Up to this distance [m] it is exact, by default four voxels. Beyond it is a lower bound, on the map less
+            than two voxels too low: the clearance of the nearest voxel's centre less the way there.
 
         Returns
         -------
@@ -201,11 +201,13 @@ class City:
         Raises
         ------
         ValueError
-            If `points` hasn't shape (..., 3) or is not finite.
+            If `points` hasn't shape (..., 3) or is not finite, or `exact_within` is negative.
         """
         points = np.asarray(points, dtype=float)
         if points.shape[-1:] != (3,) or not np.isfinite(points).all():
             raise ValueError(f"points must be finite and have shape (..., 3), got shape {points.shape}")
+        if exact_within is not None and not exact_within >= 0:
+            raise ValueError(f"exact_within must be a distance in metres, at least 0, got {exact_within!r}")
         cells = (points.reshape(-1, 3) - self.origin) / self.cell
         near = 4.0 if exact_within is None else exact_within / self.cell
         distances = distances_to_obstacle(self.occupied, self.clearance, self.cell, cells, near)

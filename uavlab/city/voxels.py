@@ -135,15 +135,16 @@ def distance_to_obstacle(occupied, clearance, cell, point, exact_within):
     from_centre = clearance[i, j, k] / cell
     if from_centre - off >= exact_within:
         return from_centre - off
-    least = from_centre + off
-    reach = math.ceil(least)
-    for a in range(max(math.floor(x) - reach, 0), min(math.floor(x) + reach + 1, nx)):
+    least = min(from_centre + off, exact_within)
+    for a in range(max(math.floor(x - least), 0), min(math.floor(x + least) + 1, nx)):
         dx = max(a - x, 0.0, x - a - 1)
-        for b in range(max(math.floor(y) - reach, 0), min(math.floor(y) + reach + 1, ny)):
+        for b in range(max(math.floor(y - least), 0), min(math.floor(y + least) + 1, ny)):
             dy = max(b - y, 0.0, y - b - 1)
-            if dx * dx + dy * dy >= least * least:
+            left = least * least - dx * dx - dy * dy
+            if left <= 0.0:
                 continue
-            for c in range(max(math.floor(z) - reach, 0), min(math.floor(z) + reach + 1, nz)):
+            left = math.sqrt(left)
+            for c in range(max(math.floor(z - left), 0), min(math.floor(z + left) + 1, nz)):
                 if occupied[a, b, c]:
                     dz = max(c - z, 0.0, z - c - 1)
                     least = min(least, math.sqrt(dx * dx + dy * dy + dz * dz))

@@ -1,0 +1,199 @@
+"""What disturbs a flight: wind with gusts, as a force on a body; or offsets themselves, as REPARE has them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.integrate import quad
+
+from uavlab import checks
+from uavlab.resilience import BASIC, Controller, basic_offset
+from uavlab.vehicle import GRAVITY, UAV
+from uavlab.weather import Weather, dryden_parameters, dryden_spectrum
+from uavlab.weather.forces import STANDARD_AIR
+
+GUSTS = ("none", "gaussian", "ou", "dryden")
+"""In the order of the kinds in `uavlab.flight.motion`."""
+
+
+@dataclass(frozen=True)
+class Wind:
+    """Moving air and rain: a mean, and gusts around it.
+
+    Attributes
+    ----------
+    mean : (2,) or (3,)
+        Where the air moves to, east, north and up [m/s].
+    gusts : {"ou", "gaussian", "dryden", "none"}
+        "ou": Ornstein-Uhlenbeck, R(t) = σ² exp(−|t|/τ). "gaussian": drawn anew every τ seconds. "dryden": after
+        MIL-F-8785C at the route's height; it takes its strength from the mean wind, as that at 6 m, and its pace from
+        the air that passes the UAV.
+    deviation : float
+        σ of each level component [m/s], at least 0; vertical gusts have half of it. Not for "dryden".
+    correlation : float
+        τ [s], above 0. Not for "dryden".
+    rain_mm_per_h : float
+        Rain rate [mm/h].
+    air_density : float
+        [kg/m³]
+
+    Raises
+    ------
+    ValueError
+        If an attribute is out of its range, or Dryden gusts have no mean wind to come from.
+    """
+
+    mean: tuple[float, ...] = (0.0, 0.0, 0.0)
+    gusts: str = "ou"
+    deviation: float = 1.0
+    correlation: float = 1.0
+    rain_mm_per_h: float = 0.0
+    air_density: float = STANDARD_AIR
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mean", checks.three("mean", self.mean))
+        checks.one_of("gusts", self.gusts, GUSTS)
+        for name in ("deviation", "rain_mm_per_h"):
+            checks.not_negative_number(name, getattr(self, name))
+        for name in ("correlation", "air_density"):
+            checks.positive_number(name, getattr(self, name))
+        if self.gusts == "dryden" and not any(self.mean[:2]):
+            raise ValueError("mean is calm, and Dryden gusts take their strength from it: give a wind, or other gusts")
+
+    @classmethod
+    def from_weather(cls, weather: Weather, gusts: str = "ou", correlation: float = 1.0) -> "Wind":
+        """The wind of a state of the weather; its strongest gust counts as 3σ above the mean."""
+        mean, gust = weather.reference_wind
+        return cls(
+            mean=tuple(mean * weather.wind_direction),
+            gusts=gusts,
+            deviation=(gust - mean) / 3,
+            correlation=correlation,
+            rain_mm_per_h=weather.rain_mm_per_h,
+            air_density=weather.air_density,
+        )
+
+    @property
+    def speed(self) -> float:
+        """Of the mean wind [m/s]."""
+        return float(np.linalg.norm(self.mean))
+
+
+@dataclass(frozen=True)
+class OffsetProcess:
+    """Offsets from the route as REPARE has them, without a body: a damped spring that white noise shakes.
+
+    x″ + 2 ω_n x′ + ω_n² x = noise on each axis, around a mean; see `uavlab.offsets.offset_paths`. It knows neither
+    thrust nor tilt limits, and the UAV keeps its speed.
+
+    Attributes
+    ----------
+    sigma : float or (3,)
+        σ east, north and up under the basic controller [m], at least 0. Under one with another ω_n it is
+        σ·ω_n^(−3/2).
+    mean : (2,) or (3,)
+        μ [m].
+    rough : bool
+        An Ornstein-Uhlenbeck process with the same σ and correlation time, which is beyond its σ again and again.
+
+    Raises
+    ------
+    ValueError
+        If σ is negative, or one of them is not finite or has another shape.
+    """
+
+    sigma: float | tuple[float, ...] = 1.0
+    mean: tuple[float, ...] = (0.0, 0.0, 0.0)
+    rough: bool = False
+
+    def __post_init__(self) -> None:
+        checks.not_negative("sigma", self.sigma)
+        if np.shape(self.sigma) not in ((), (3,)):
+            raise ValueError(f"sigma must be one number or three (east, north, up), got shape {np.shape(self.sigma)}")
+        object.__setattr__(self, "mean", checks.three("mean", self.mean))
+
+    def step(self, time_step: float, controller: Controller) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """σ (3,), and what becomes of position and speed in a time step: transition and noise, (2, 2) each.
+
+        In units of σ and ω_n σ, exact for any step.
+        """
+        turn = controller.natural_frequency * time_step
+        if self.rough:  # no speed
+            keep = np.exp(-turn / 2)
+            transition, noise = np.diag([keep, 0.0]), np.diag([np.sqrt(1 - keep**2), 0.0])
+        else:
+            transition = np.exp(-turn) * np.array([[1 + turn, turn], [-turn, 1 - turn]])
+            noise = np.linalg.cholesky(np.eye(2) - transition @ transition.T)
+        return np.broadcast_to(self.sigma, 3) / basic_offset(controller), transition, noise
+
+
+def offset_sigma(
+    uav: UAV,
+    wind: Wind,
+    *,
+    ground_velocity: npt.ArrayLike = (0.0, 0.0, 0.0),
+    altitude: float = 30.0,
+    controller: Controller = BASIC,
+) -> np.ndarray:
+    """σ of the offsets that gusts should cause, when they are small: theory for what `fly` does.
+
+    Drag grows with V², so that a gust along the air stream weighs ρ C S V, twice as much as one across. The position
+    control is a second-order system: σ² = ∫ S(ω) |H(ω)|² dω, H = 1/(ω_n² − ω² + 2iω_n ω + iωd), where the drag itself
+    damps with d per second.
+
+    Parameters
+    ----------
+    uav : UAV
+    wind : Wind
+    ground_velocity : (2,) or (3,) array
+        Of the UAV [m/s].
+    altitude : float
+        For Dryden gusts [m].
+    controller : Controller
+
+    Returns
+    -------
+    (3,) array
+        σ along the air stream, across it and up [m].
+
+    Raises
+    ------
+    ValueError
+        If the air stands still relative to the UAV: small gusts then have no force.
+    """
+    stream = np.array(wind.mean) - checks.three("ground_velocity", ground_velocity)
+    speed = float(np.linalg.norm(stream))
+    if speed == 0:
+        raise ValueError("the air stands still relative to the UAV, so that small gusts have no force on it")
+    mass, natural = uav.weight / GRAVITY, controller.natural_frequency
+    damping = np.array([2.0, 1.0, 1.0]) * 0.5 * wind.air_density * uav.drag_area * speed / mass
+    variances = []
+    for axis in range(3):
+
+        def density(omega: float, axis: int = axis) -> float:
+            gust = gust_spectrum(wind, omega, speed, altitude)[axis] * damping[axis] ** 2
+            spring, damper = natural**2 - omega**2, (2 * natural + damping[axis]) * omega
+            return float(gust / (spring**2 + damper**2))
+
+        variances.append(sum(quad(density, low, high, limit=400)[0] for low, high in ((0, natural), (natural, np.inf))))
+    return np.sqrt(variances)
+
+
+def gust_spectrum(wind: Wind, omega: npt.ArrayLike, air_speed: float, altitude: float = 30.0) -> np.ndarray:
+    """One-sided spectral density of gusts (..., 3) [m²/s² per rad/s]: its integral over ω is their variance."""
+    omega = checks.numbers("omega", omega)
+    if wind.gusts == "none":
+        return np.zeros((*omega.shape, 3))
+    if wind.gusts == "dryden":
+        return dryden_spectrum(omega, air_speed, altitude, wind.speed)
+    turn = omega * wind.correlation
+    shape = 2 / (1 + turn**2) if wind.gusts == "ou" else np.sinc(turn / (2 * np.pi)) ** 2
+    deviations = wind.deviation * np.array([1.0, 1.0, 0.5])
+    return wind.correlation / np.pi * shape[..., None] * deviations**2
+
+
+def gust_deviations(wind: Wind, altitude: float) -> np.ndarray:
+    """σ of gusts along, across and vertical, (3,) [m/s]."""
+    if wind.gusts == "dryden":
+        return dryden_parameters(altitude, wind.speed).deviations
+    return (wind.gusts != "none") * wind.deviation * np.array([1.0, 1.0, 0.5])

@@ -1,0 +1,295 @@
+"""The flight itself, step by step: a body with limited thrust that an autopilot pulls along a route, in gusts."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from uavlab.city.voxels import distance_to_obstacle
+from uavlab.compiled import compiled
+from uavlab.vehicle import GRAVITY
+
+PREVIEW = 0.25
+"""How far ahead and back the autopilot looks to know how its velocity has to change [s]."""
+
+LEAST_THRUST = 0.1
+"""Of the greatest: rotors can't push down."""
+
+COLUMNS = ("time", "x", "y", "z", "x_ref", "y_ref", "z_ref", "along", "across", "up", "thrust", "speed")
+"""What is logged: position and reference [m], offset in the route's frame [m], thrust [N], speed over ground [m/s]."""
+
+NONE, GAUSSIAN, OU, DRYDEN = range(4)
+FLYING, ARRIVED, CRASHED = range(3)
+
+
+class Body(NamedTuple):
+    """The vehicle and its autopilot."""
+
+    mass: float
+    thrust: float
+    drag: float  # ½ ρ C S [kg/m]
+    tan_tilt: float
+    rain: float  # [N]
+    trim: np.ndarray  # (3,) the mean wind that the autopilot reckons with [m/s]
+    omega: float  # ω_n of its position control [rad/s]
+    pace: float  # share of the planned speed
+    gps_position: float  # σ of a fix [m]
+    gps_velocity: float  # [m/s]
+    gps_every: int  # steps from fix to fix
+
+
+class Air(NamedTuple):
+    """The mean wind, and how gusts go on from step to step."""
+
+    mean: np.ndarray  # (3,) [m/s]
+    kind: int
+    frame: np.ndarray  # (3, 3) columns: along, across, up
+    deviation: np.ndarray  # (3,) [m/s]
+    keep: np.ndarray  # (3, 2, 2) transition of two lags; OU gusts use the first
+    enter: np.ndarray  # (3, 2, 2) of the noise
+    read: np.ndarray  # (3, 2) gust from lags
+    every: int  # steps from draw to draw
+
+
+class Spring(NamedTuple):
+    """Offsets on three axes without a body."""
+
+    mean: np.ndarray  # (3,) [m]
+    sigma: np.ndarray  # (3,) [m]
+    keep: np.ndarray  # (2, 2)
+    enter: np.ndarray  # (2, 2)
+    omega: float  # ω_n [rad/s]
+    pace: float
+
+
+class Space(NamedTuple):
+    """The city."""
+
+    occupied: np.ndarray
+    clearance: np.ndarray  # [m]
+    origin: np.ndarray
+    cell: float
+    touching: float  # distance at which the body collides [m]
+
+
+class State(NamedTuple):
+    """All that changes; flights go on from it."""
+
+    position: np.ndarray  # (3,) [m]
+    velocity: np.ndarray
+    target: np.ndarray  # (3,) where it should be
+    seen_position: np.ndarray  # as the autopilot has it
+    seen_velocity: np.ndarray
+    lags: np.ndarray  # (3, 2) of the gusts, or offsets and their speeds
+    gust: np.ndarray  # (3,) [m/s]
+    heading: np.ndarray  # (2,) of the route, level
+    way: np.ndarray  # (2,) distance along the route [m], its leg
+    sums: np.ndarray  # (2,) least distance to obstacles [m], ∫ T^1.5 dt
+    counts: np.ndarray  # (2,) steps made, rows logged
+
+
+@compiled
+def fly_on(body, air, path, space, state, dt, most, every, rng, log):
+    """Fly up to `most` steps: FLYING, ARRIVED or CRASHED."""
+    target_velocity, ahead, back = np.empty(3), np.empty(3), np.empty(3)
+    thrust, stream = np.empty(3), np.empty(3)
+    for _ in range(most):
+        step = state.counts[0]
+        speed = advance(path, state, dt * body.pace, target_velocity) * body.pace
+        velocity_at(path, state, speed * PREVIEW, ahead)
+        velocity_at(path, state, -speed * PREVIEW, back)
+        blow(air, state, step, rng)
+        if step % body.gps_every == 0:
+            for a in range(3):
+                state.seen_position[a] = state.position[a] + body.gps_position * rng.standard_normal()
+                state.seen_velocity[a] = state.velocity[a] + body.gps_velocity * rng.standard_normal()
+        for a in range(3):
+            target_velocity[a] *= body.pace
+            change = body.pace**2 * (ahead[a] - back[a]) / (2 * PREVIEW)
+            pull = body.omega**2 * (state.target[a] - state.seen_position[a])
+            damping = 2 * body.omega * (target_velocity[a] - state.seen_velocity[a])
+            thrust[a] = body.mass * (change + pull + damping)
+            stream[a] = body.trim[a] - target_velocity[a]
+        pressure = body.drag * length(stream)
+        for a in range(3):
+            thrust[a] -= pressure * stream[a]
+        thrust[2] += body.mass * GRAVITY + body.rain
+        limit(body, thrust)
+        for a in range(3):
+            stream[a] = air.mean[a] + state.gust[a] - state.velocity[a]
+        pressure = body.drag * length(stream)
+        for a in range(3):
+            force = thrust[a] + pressure * stream[a]
+            if a == 2:
+                force -= body.mass * GRAVITY + body.rain
+            state.velocity[a] += dt * force / body.mass
+            state.position[a] += dt * state.velocity[a]
+            state.seen_position[a] += dt * state.seen_velocity[a]
+        pulled = length(thrust)
+        state.sums[1] += dt * pulled**1.5
+        outcome = note(path, space, state, dt, every, pulled, log)
+        if outcome != FLYING:
+            return outcome
+    return FLYING
+
+
+@compiled
+def drift_on(spring, path, space, state, dt, most, every, rng, log):
+    """The same for offsets without a body: they are added to the route."""
+    target_velocity = np.empty(3)
+    for _ in range(most):
+        if state.counts[0] > 0:
+            advance(path, state, dt * spring.pace, target_velocity)
+        else:
+            advance(path, state, 0.0, target_velocity)
+        for a in range(3):
+            one, two = rng.standard_normal(), rng.standard_normal()
+            x, v = state.lags[a, 0], state.lags[a, 1]
+            if state.counts[0] == 0:
+                state.lags[a, 0], state.lags[a, 1] = one, two
+            else:
+                state.lags[a, 0] = spring.keep[0, 0] * x + spring.keep[0, 1] * v + spring.enter[0, 0] * one
+                state.lags[a, 1] = (
+                    spring.keep[1, 0] * x + spring.keep[1, 1] * v + spring.enter[1, 0] * one + spring.enter[1, 1] * two
+                )
+            position = state.target[a] + spring.mean[a] + spring.sigma[a] * state.lags[a, 0]
+            state.velocity[a] = (position - state.position[a]) / dt
+            state.position[a] = position
+        outcome = note(path, space, state, dt, every, np.nan, log)
+        if outcome != FLYING:
+            return outcome
+    return FLYING
+
+
+@compiled
+def advance(path, state, dt, velocity):
+    """Move the reference along the route by a time step; its place and velocity in place, its speed returned."""
+    leg = int(state.way[1])
+    s = state.way[0]
+    s = min(s + dt * speed_at(path, s, leg), path.distance[-1])
+    while leg < len(path.on_legs) - 1 and s >= path.distance[leg + 1]:
+        leg += 1
+    state.way[0] = s
+    state.way[1] = leg
+    speed = speed_at(path, s, leg)
+    for a in range(3):
+        state.target[a] = path.points[leg, a] + (s - path.distance[leg]) * path.direction[leg, a]
+        velocity[a] = speed * path.direction[leg, a]
+    level = math.hypot(path.direction[leg, 0], path.direction[leg, 1])
+    if level > 1e-9:
+        state.heading[0] = path.direction[leg, 0] / level
+        state.heading[1] = path.direction[leg, 1] / level
+    return speed
+
+
+@compiled
+def speed_at(path, s, leg):
+    """Speed on a leg: that of the leg, less where it has to brake for the next waypoint or still gathers speed."""
+    since = path.at_points[leg] ** 2 + 2 * path.braking * max(s - path.distance[leg], 0.0)
+    until = path.at_points[leg + 1] ** 2 + 2 * path.braking * max(path.distance[leg + 1] - s, 0.0)
+    return min(path.on_legs[leg], math.sqrt(min(since, until)))
+
+
+@compiled
+def velocity_at(path, state, beyond, velocity):
+    """Velocity of the reference some metres beyond where it is, or before."""
+    s = min(max(state.way[0] + beyond, 0.0), path.distance[-1])
+    leg = int(state.way[1])
+    while leg < len(path.on_legs) - 1 and s >= path.distance[leg + 1]:
+        leg += 1
+    while leg > 0 and s < path.distance[leg]:
+        leg -= 1
+    speed = speed_at(path, s, leg)
+    for a in range(3):
+        velocity[a] = speed * path.direction[leg, a]
+
+
+@compiled
+def blow(air, state, step, rng):
+    """The gust of a step."""
+    if air.kind == NONE or (air.kind == GAUSSIAN and step % air.every):
+        return
+    state.gust[:] = 0.0
+    for axis in range(3):
+        one, two = rng.standard_normal(), 0.0
+        x, y = state.lags[axis, 0], state.lags[axis, 1]
+        if air.kind == GAUSSIAN:
+            value = one
+        elif air.kind == OU:
+            state.lags[axis, 0] = one if step == 0 else air.keep[axis, 0, 0] * x + air.enter[axis, 0, 0] * one
+            value = state.lags[axis, 0]
+        else:
+            two = rng.standard_normal()
+            if step == 0:  # the stationary state
+                state.lags[axis, 0] = math.sqrt(0.5) * one
+                state.lags[axis, 1] = math.sqrt(0.125) * (one + two)
+            else:
+                enter = air.enter[axis]
+                state.lags[axis, 0] = air.keep[axis, 0, 0] * x + enter[0, 0] * one
+                state.lags[axis, 1] = (
+                    air.keep[axis, 1, 0] * x + air.keep[axis, 1, 1] * y + enter[1, 0] * one + enter[1, 1] * two
+                )
+            value = air.read[axis, 0] * state.lags[axis, 0] + air.read[axis, 1] * state.lags[axis, 1]
+        for a in range(3):
+            state.gust[a] += air.frame[a, axis] * air.deviation[axis] * value
+
+
+@compiled
+def limit(body, thrust):
+    """What the rotors can do of a thrust: first hold the height, then pull sideways, no more than the tilt allows."""
+    thrust[2] = min(max(thrust[2], LEAST_THRUST * body.thrust), body.thrust)
+    sideways = math.hypot(thrust[0], thrust[1])
+    most = min(math.sqrt(body.thrust**2 - thrust[2] ** 2), thrust[2] * body.tan_tilt)
+    if sideways > most:
+        thrust[0] *= most / sideways
+        thrust[1] *= most / sideways
+
+
+@compiled
+def note(path, space, state, dt, every, thrust, log):
+    """Look around after a step, log it if it is time or over, and count it."""
+    point = (
+        (state.position[0] - space.origin[0]) / space.cell,
+        (state.position[1] - space.origin[1]) / space.cell,
+        (state.position[2] - space.origin[2]) / space.cell,
+    )
+    near = max(min(state.sums[0] / space.cell, 4.0), space.touching / space.cell)
+    gap = space.cell * distance_to_obstacle(space.occupied, space.clearance, space.cell, point, near)
+    state.sums[0] = min(state.sums[0], gap)
+    outcome = FLYING
+    if gap < space.touching or point[2] < 0.0:
+        outcome = CRASHED
+    elif state.way[0] >= path.distance[-1]:
+        outcome = ARRIVED
+    if state.counts[0] % every == 0 or outcome != FLYING:
+        row = log[state.counts[1]]
+        row[0] = state.counts[0] * dt
+        for a in range(3):
+            row[1 + a] = state.position[a]
+            row[4 + a] = state.target[a]
+        x, y = state.position[0] - state.target[0], state.position[1] - state.target[1]
+        row[7] = x * state.heading[0] + y * state.heading[1]
+        row[8] = y * state.heading[0] - x * state.heading[1]
+        row[9] = state.position[2] - state.target[2]
+        row[10] = thrust
+        row[11] = length(state.velocity)
+        state.counts[1] += 1
+    state.counts[0] += 1
+    return outcome
+
+
+@compiled
+def steps_to_goal(path, pace, dt):
+    """How many steps the reference takes; one more where the first of them stands."""
+    s, leg, steps = 0.0, 0, 1
+    while s < path.distance[-1]:
+        s += dt * pace * speed_at(path, s, leg)
+        while leg < len(path.on_legs) - 1 and s >= path.distance[leg + 1]:
+            leg += 1
+        steps += 1
+    return steps
+
+
+@compiled
+def length(vector):
+    return math.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)

@@ -1,0 +1,96 @@
+"""How fast a route can be flown: a speed for each waypoint and leg, so that turns and stops stay within what holds."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from uavlab.flight.disturbance import Wind
+from uavlab.route import Route
+from uavlab.vehicle import GRAVITY, UAV
+from uavlab.weather import rain_force, reachable_ground_speed, wind_drag
+
+TURN_JUMP = 1.0
+"""By how much the velocity may jump at a waypoint [m/s]; the autopilot begins to turn a moment before."""
+
+BRAKING = 2.0
+"""Along the route [m/s²]."""
+
+BANK = np.radians(30.0)
+CREEP = 0.1
+"""With what a flight begins and ends [m/s]."""
+
+
+class Path(NamedTuple):
+    """A route for compiled code."""
+
+    points: np.ndarray  # (N, 3) [m]
+    distance: np.ndarray  # (N,) [m]
+    direction: np.ndarray  # (N − 1, 3) of the legs
+    at_points: np.ndarray  # (N,) greatest speed there [m/s]
+    on_legs: np.ndarray  # (N − 1,) and in between
+    braking: float  # [m/s²]
+
+
+def constant_speed(route: Route, speed: float) -> Path:
+    """The same speed all the way."""
+    return Path(*geometry(route), np.full(len(route.points), speed), np.full(len(route.points) - 1, speed), BRAKING)
+
+
+def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
+    """As fast as asked, but for turns, for head winds, and for what the thrust left over can brake.
+
+    Half of what the rotors have left beside weight, rain and mean wind is for turns, half for gusts; it may bank by
+    30° at most.
+    """
+    points, distance, direction = geometry(route)
+    mass = uav.weight / GRAVITY
+    spare = thrust_left(uav, wind)
+    agility = min(GRAVITY * np.tan(BANK), 0.5 * spare / mass)
+    reachable = reachable_ground_speed(uav.top_speed, wind.mean, direction)
+    on_legs = np.minimum(speed, reachable)
+    at_points = np.full(len(points), CREEP)
+    turn = np.arccos(np.clip((direction[:-1] * direction[1:]).sum(axis=1), -1.0, 1.0))
+    apart = (np.diff(distance)[:-1] + np.diff(distance)[1:]) / 2
+    with np.errstate(divide="ignore"):
+        smooth = np.sqrt(agility * apart / turn)
+        sharp = TURN_JUMP / (2 * np.sin(turn / 2))
+    at_points[1:-1] = np.maximum(np.min([on_legs[:-1], on_legs[1:], smooth, sharp], axis=0), CREEP)
+    return Path(points, distance, direction, at_points, on_legs, min(BRAKING, agility))
+
+
+def geometry(route: Route) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points, distances and directions of a route, without legs of no length."""
+    keep = np.concatenate([[True], route.leg_lengths > 0])
+    points = np.ascontiguousarray(route.points[keep])
+    legs = np.diff(points, axis=0)
+    length = np.linalg.norm(legs, axis=1)
+    return points, np.concatenate([[0.0], np.cumsum(length)]), legs / length[:, None]
+
+
+def thrust_left(uav: UAV, wind: Wind) -> float:
+    """Level thrust that is left while hovering in the mean wind and rain [N]; negative: it is blown away."""
+    reserve = float(uav.horizontal_reserve(rain_force(wind.rain_mm_per_h, uav.rain_area)))
+    drag = wind_drag(wind.mean, (0.0, 0.0, 0.0), uav.drag_area, air_density=wind.air_density)
+    return reserve - float(np.linalg.norm(drag))
+
+
+def why_grounded(route: Route, uav: UAV, wind: Wind) -> str:
+    """Why a UAV can't fly a route in a wind; empty if it can."""
+    left = thrust_left(uav, wind)
+    if left <= 0:
+        reserve = float(uav.horizontal_reserve(rain_force(wind.rain_mm_per_h, uav.rain_area)))
+        return (
+            f"a wind of {wind.speed:.1f} m/s pushes with {reserve - left:.1f} N, the thrust left over holds "
+            f"{reserve:.1f} N: {-left:.1f} N short"
+        )
+    direction = geometry(route)[2]
+    along = direction @ wind.mean
+    across = np.sqrt(np.maximum(wind.speed**2 - along**2, 0.0))
+    worst = int(np.argmax(across))
+    if across[worst] >= uav.top_speed:
+        return f"crosswind of {across[worst]:.1f} m/s on leg {worst}, the top speed is {uav.top_speed:g} m/s"
+    slowest = np.sqrt(uav.top_speed**2 - across**2) + along
+    worst = int(np.argmin(slowest))
+    if slowest[worst] <= CREEP:
+        return f"head wind of {-along[worst]:.1f} m/s on leg {worst}, the top speed is {uav.top_speed:g} m/s"
+    return ""

@@ -1,0 +1,166 @@
+"""What flights leave behind: tracks, offsets, crashes and how sure their number is."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from scipy.stats import beta
+
+from uavlab import checks
+from uavlab.flight.motion import COLUMNS
+from uavlab.planners.comparison import over_maps
+from uavlab.resilience import Change
+from uavlab.route import Route
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """One flight, every step of it.
+
+    Attributes
+    ----------
+    outcome : {"arrived", "crashed", "landed", "grounded"}
+    reason : str
+        Where and when it crashed, why it landed or never took off; empty when it arrived.
+    log : (T, 12) array
+        A row each time step, see `uavlab.flight.motion.COLUMNS`.
+    clearance : float
+        Least distance of its centre to the obstacles [m], exact up to four voxels; infinite when it never flew.
+    energy : float
+        From the battery [J]; NaN for an `OffsetProcess`, which has no thrust.
+    changes : list of Change
+        What the monitor changed.
+    """
+
+    outcome: str
+    reason: str
+    log: np.ndarray
+    clearance: float
+    energy: float
+    changes: list[Change] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        return f"<Flight: {self.outcome} after {self.duration:.1f} s{', ' * bool(self.reason)}{self.reason}>"
+
+    def column(self, name: str) -> np.ndarray:
+        """A column of the log by its name, (T,)."""
+        return self.log[:, COLUMNS.index(checks.one_of("name", name, COLUMNS))]
+
+    @property
+    def time(self) -> np.ndarray:
+        """(T,) [s]"""
+        return self.log[:, 0]
+
+    @property
+    def duration(self) -> float:
+        """[s]"""
+        return float(self.log[-1, 0]) if len(self.log) else 0.0
+
+    @property
+    def position(self) -> np.ndarray:
+        """Of the body's centre, (T, 3) [m]."""
+        return self.log[:, 1:4]
+
+    @property
+    def reference(self) -> np.ndarray:
+        """Where it should be, (T, 3) [m]."""
+        return self.log[:, 4:7]
+
+    @property
+    def offset(self) -> np.ndarray:
+        """Along the route, across it to the left, and up, (T, 3) [m]."""
+        return self.log[:, 7:10]
+
+    def route(self) -> Route:
+        """The way flown."""
+        return Route(self.position, f"flown: {self.outcome}", reached=self.outcome == "arrived", reason=self.reason)
+
+
+@dataclass(frozen=True, eq=False)
+class Flights:
+    """N flights of one route.
+
+    Attributes
+    ----------
+    outcome : (N,) array of str
+        "arrived", "crashed", "landed" or "grounded".
+    duration, clearance, energy : (N,) arrays
+        As for `Flight` [s], [m], [J].
+    place : (N, 3) array
+        Where it ended [m].
+    offsets : (N, S, 3) array
+        Along, across and up [m], as often as asked for; NaN after its end.
+    reason : str
+        Why all are grounded; empty if they fly.
+    """
+
+    outcome: np.ndarray
+    duration: np.ndarray
+    clearance: np.ndarray
+    energy: np.ndarray
+    place: np.ndarray
+    offsets: np.ndarray
+    reason: str = ""
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{(self.outcome == name).sum()} {name}" for name in np.unique(self.outcome))
+        return f"<Flights: {counts}>"
+
+    @property
+    def crashed(self) -> np.ndarray:
+        """(N,) bool"""
+        return self.outcome == "crashed"
+
+    @property
+    def samples(self) -> np.ndarray:
+        """All offsets across and up in one list, (M, 2) [m]: ξ_hor, signed, and ξ_ver of REPARE 3.4."""
+        across_up = self.offsets[..., 1:].reshape(-1, 2)
+        return across_up[np.isfinite(across_up).all(axis=1)]
+
+
+class Rate(NamedTuple):
+    """Crashes per 1 000 flights, and its 95 % interval."""
+
+    per_thousand: float
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        return f"{self.per_thousand:.3g} [{self.low:.3g}, {self.high:.3g}] per 1 000"
+
+
+def crash_rate(runs: Flights | Sequence[Flights]) -> Rate:
+    """How many of 1 000 flights crash, with a 95 % interval.
+
+    Of one route: the binomial one (Clopper and Pearson). Of several: flights of the same route aren't independent, so
+    it is a bootstrap over routes, but never narrower than the binomial one, which alone tells 0 crashes of many from
+    0 of few.
+
+    Parameters
+    ----------
+    runs : Flights, or sequence of Flights
+        With as many flights each.
+
+    Raises
+    ------
+    ValueError
+        If there are none, their numbers differ, or a UAV was grounded: what never flew can't crash.
+    """
+    runs = [runs] if isinstance(runs, Flights) else list(runs)
+    for number, run in enumerate(runs):
+        checks.instance(f"runs[{number}]", run, Flights)
+        if run.reason:
+            raise ValueError(
+                f"runs[{number}] is grounded ({run.reason}), and what never flew can't crash: leave it out"
+            )
+    if len({len(run.outcome) for run in runs}) != 1:
+        raise ValueError("runs must be at least one, with as many flights each")
+    crashed = np.array([run.crashed for run in runs])
+    count, total = int(crashed.sum()), crashed.size
+    low = float(beta.ppf(0.025, count, total - count + 1)) if count else 0.0
+    high = float(beta.ppf(0.975, count + 1, total - count)) if count < total else 1.0
+    if len(runs) > 1:
+        over_low, over_high = over_maps(np.mean, crashed)
+        low, high = min(low, over_low), max(high, over_high)
+    return Rate(1000 * count / total, 1000 * low, 1000 * high)
