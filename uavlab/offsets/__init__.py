@@ -8,7 +8,7 @@ Offsets are in metres from the route, σ is their standard deviation.
 
 from uavlab.offsets.axis import OffsetModel, SkewedOffset
 from uavlab.offsets.exposure import collision_probability, crossing_rate, offset_paths
-from uavlab.offsets.joint import JointOffset, magnitude
+from uavlab.offsets.joint import JointOffset, SafetyDomain, magnitude, safety_domain
 from uavlab.offsets.pauta import (
     PAUTA_COVERAGE,
     Filtered,
@@ -23,6 +23,7 @@ __all__ = [
     "Filtered",
     "JointOffset",
     "OffsetModel",
+    "SafetyDomain",
     "SkewedOffset",
     "collision_probability",
     "coverage",
@@ -32,4 +33,5 @@ __all__ = [
     "offset_paths",
     "pauta_filter",
     "pauta_radius",
+    "safety_domain",
 ]

@@ -12,6 +12,7 @@ from scipy.stats import rayleigh, rice
 
 from uavlab import checks
 from uavlab.offsets.pauta import PAUTA_COVERAGE, pauta_radius
+from uavlab.offsets.pauta import coverage as coverage_of
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,70 @@ class JointOffset:
     def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
         """Independent offsets (count, 2) [m]."""
         return np.random.default_rng(rng).multivariate_normal(self.mean, self.covariance, count, method="cholesky")
+
+
+@dataclass(frozen=True, eq=False)
+class SafetyDomain:
+    """Where offsets on two axes are to stay, as REPARE Fig. 18 draws it over their joint density.
+
+    Attributes
+    ----------
+    model : JointOffset
+        Fitted to the offsets.
+    coverage : float
+        Share of the model within the ellipse.
+    ellipse : (181, 2) array
+        Closed outline [m] around the mean.
+    radius : float
+        Of the circle around the route [m], the ξ of Eq. 7 for all directions.
+    in_ellipse, in_circle : float
+        Share of the offsets within each.
+    """
+
+    model: JointOffset
+    coverage: float
+    ellipse: np.ndarray
+    radius: float
+    in_ellipse: float
+    in_circle: float
+
+
+def safety_domain(
+    samples: npt.ArrayLike, coverage: float = PAUTA_COVERAGE, *, as_printed: bool = False
+) -> SafetyDomain:
+    """Fit the joint density to offsets, and find where a share of them stays (REPARE 3.4, Fig. 18).
+
+    Parameters
+    ----------
+    samples : (N, 2) array
+        Offsets [m], such as `Flights.samples`; N at least 3.
+    coverage : float
+        Between 0 and 1; 99.73 % by default.
+    as_printed : bool
+        The Pauta criterion of one axis, 3σ, for two: the ellipse then holds 98.89 % where 99.73 % are meant.
+
+    Returns
+    -------
+    SafetyDomain
+
+    Raises
+    ------
+    ValueError
+        If a sample is not finite, there are too few, they lie on a line, or the coverage is not between 0 and 1.
+    """
+    model = JointOffset.fit(samples)
+    radius_in_sigma = float(pauta_radius(1 if as_printed else 2, coverage))
+    held = float(coverage_of(radius_in_sigma, 2))
+    radius = radius_in_sigma * max(model.sigma) if as_printed else model.circle(coverage)
+    points = np.asarray(samples, dtype=float)
+    return SafetyDomain(
+        model,
+        held,
+        model.ellipse(held),
+        radius,
+        float((model.radius_in_sigma(points) <= radius_in_sigma).mean()),
+        float((np.hypot(*points.T) <= radius).mean()),
+    )
 
 
 def magnitude(sigma: float, mean_length: float = 0.0) -> Any:
