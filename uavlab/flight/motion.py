@@ -257,7 +257,7 @@ def note(path, space, state, dt, every, thrust, log):
     gap = space.cell * distance_to_obstacle(space.occupied, space.clearance, space.cell, point, near)
     state.sums[0] = min(state.sums[0], gap)
     outcome = FLYING
-    if gap < space.touching or point[2] < 0.0:
+    if gap < space.touching:
         outcome = CRASHED
     elif state.way[0] >= path.distance[-1]:
         outcome = ARRIVED

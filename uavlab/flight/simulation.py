@@ -81,7 +81,8 @@ def fly(
     route : Route or Curve
     city : City
     uav : UAV
-        Its body is a ball of its diameter; it collides when that touches an obstacle, or its centre the ground.
+        Its body is a ball of its diameter; it collides when that touches an obstacle. The ground is none, as for the
+        planners: flights begin and end there.
     disturbance : Wind, OffsetProcess, or callable
         Or a function of the time [s] that returns one of these, always the same kind.
     autopilot : Autopilot
