@@ -22,6 +22,21 @@ def random_city(seed):
     return City(occupied, cell=rng.uniform(0.3, 7), origin=rng.uniform(-1e3, 1e3, 3))
 
 
+def from_boxes(city, points):
+    """Distance from points (N, 3) to the nearest occupied box, by looking at all of them."""
+    low = city.origin + city.cell * np.argwhere(city.occupied)
+    gap = np.maximum(np.maximum(low - points[:, None], points[:, None] - low - city.cell), 0.0)
+    return np.linalg.norm(gap, axis=2).min(axis=1, initial=np.inf)
+
+
+def random_points(city, seed, beyond=0.0, count=400):
+    """Points anywhere in the map and so many voxels around it, some on faces, edges and corners of voxels."""
+    rng = np.random.default_rng(seed)
+    cells = rng.uniform(-beyond, np.array(city.shape) + beyond, (count, 3))
+    on_faces = rng.random((count, 3)) < 0.2
+    return city.origin + city.cell * np.where(on_faces, np.round(cells), cells)
+
+
 @given(st.tuples(*[st.integers(1, 9)] * 3), st.data())
 @settings(deadline=None)
 def test_code_and_index_are_inverse_of_each_other(shape, data):
@@ -90,6 +105,87 @@ def test_clearance_of_a_single_voxel_in_metres():
     assert clearance[6, 3, 3] == pytest.approx(5)
     assert clearance[5, 5, 3] == pytest.approx(3 * np.sqrt(2))
     assert clearance[0, 0, 0] == pytest.approx(5 * np.sqrt(3))
+
+
+@pytest.mark.parametrize("density", [0.001, 0.01, 0.2])
+@pytest.mark.parametrize("seed", range(6))
+def test_distance_is_exact_within_four_voxels_and_a_lower_bound_beyond(seed, density):
+    rng = np.random.default_rng(seed)
+    occupied = rng.random(rng.integers(10, 25, 3)) < density
+    occupied[tuple(rng.integers(occupied.shape))] = True
+    city = City(occupied, cell=rng.uniform(0.3, 7), origin=rng.uniform(-1e3, 1e3, 3))
+    points = random_points(city, seed)
+    right, distance = from_boxes(city, points), city.distance(points)
+    near = right <= 4 * city.cell
+    assert near.any()
+    assert distance[near] == pytest.approx(right[near], rel=0, abs=1e-9)
+    assert (distance[~near] >= 4 * city.cell - 1e-9).all()
+    assert (distance <= right + 1e-9).all()
+    assert (right - distance < 2 * city.cell).all()
+    if density < 0.01:
+        assert (right - distance > 0.5 * city.cell).any()  # so the bound is used
+
+
+@pytest.mark.parametrize("within", [0.0, 0.3, 2.0, 7.5, 100.0, np.inf])
+@pytest.mark.parametrize("seed", range(3))
+def test_distance_is_exact_as_far_as_is_asked(seed, within):
+    city = City(np.random.default_rng(seed).random((20, 15, 10)) < 0.002, cell=2.5, origin=(-7, 3, 100))
+    points = random_points(city, seed)
+    right, distance = from_boxes(city, points), city.distance(points, within)
+    near = right <= within
+    assert distance[near] == pytest.approx(right[near], rel=0, abs=1e-9)
+    assert (distance[~near] >= within - 1e-9).all()
+    assert (distance <= right + 1e-9).all()
+    assert (right - distance < 2 * city.cell).all()
+    assert near.all() == (within >= 100)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_distance_beyond_the_map_is_that_to_the_obstacles_on_it(seed):
+    city = random_city(seed)
+    points = random_points(city, seed, beyond=15)
+    outside = ~city.inside(points)
+    right = from_boxes(city, points)
+    assert (outside & (right <= 4 * city.cell)).any()
+    distance = city.distance(points)
+    near = right <= 4 * city.cell
+    assert distance[near] == pytest.approx(right[near], rel=0, abs=1e-9)
+    assert (distance <= right + 1e-9).all()
+    assert (distance[~near] >= 4 * city.cell - 1e-9).all()
+    assert city.distance(points, np.inf) == pytest.approx(right, rel=0, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_distance_at_a_centre_is_the_clearance_there(seed):
+    city = random_city(seed)
+    centres = city.center_of(np.moveaxis(np.indices(city.shape), 0, -1))
+    assert city.distance(centres) == pytest.approx(city.clearance, rel=0, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_distance_is_zero_in_an_obstacle_and_nowhere_else(seed):
+    city = random_city(seed)
+    points = random_points(city, seed)
+    whole = np.abs((points - city.origin) / city.cell % 1 - 0.5).max(axis=1) < 0.499  # off the faces
+    inside, distance = city.inside(points), city.distance(points)
+    assert (distance[inside & ~city.is_free(points)] == 0).all()
+    assert (distance[city.is_free(points) & whole] > 0).all()
+
+
+def test_without_obstacles_every_distance_is_infinite():
+    points = random_points(City(EMPTY), 0, beyond=3)
+    for within in (None, 0.0, 10.0, np.inf):
+        assert np.isinf(City(EMPTY).distance(points, within)).all()
+
+
+def test_distance_has_the_shape_of_the_points():
+    city = random_city(1)
+    points = random_points(city, 1, count=24)
+    assert city.distance(points[0]).shape == ()
+    assert city.distance(points[:0]).shape == (0,)
+    together = city.distance(points.reshape(2, 3, 4, 3))
+    assert together.shape == (2, 3, 4)
+    assert np.array_equal(together.ravel(), [city.distance(point) for point in points])
 
 
 def test_clearance_is_infinite_without_obstacles_and_computed_once():
@@ -454,6 +550,13 @@ def test_a_city_keeps_what_it_was_given():
         ),
         (lambda: City(~EMPTY).random_pairs(1, 0, apart=0), "no 1 pairs found that are apart=0 m"),
         (lambda: City(EMPTY).random_pairs(1, 0, apart=np.nan), "no 1 pairs found that are apart=nan m"),
+        (lambda: City(EMPTY).distance((1, 1)), r"points must be finite and have shape \(..., 3\), got shape \(2,\)"),
+        (lambda: City(EMPTY).distance(np.zeros((3, 4))), r"have shape \(..., 3\), got shape \(3, 4\)"),
+        (lambda: City(EMPTY).distance(1.0), r"have shape \(..., 3\), got shape \(\)"),
+        (lambda: City(EMPTY).distance((1, np.nan, 1)), "points must be finite"),
+        (lambda: City(EMPTY).distance((1, 1, np.inf)), "points must be finite"),
+        (lambda: City(EMPTY).distance((1, 1, 1), -0.5), "exact_within must be .* at least 0, got -0.5"),
+        (lambda: City(EMPTY).distance((1, 1, 1), np.nan), "exact_within must be .* at least 0, got nan"),
         (lambda: City(EMPTY).voxels_along([(1, 1, 1), (1, np.inf, 1)]), "points must be finite"),
         (lambda: City(EMPTY).voxels_along([(1, 1), (1, 2)]), r"points must .* shape \(N, 3\), got .*\(2, 2\)"),
     ],

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from uavlab.city.voxels import squared_clearance, voxels_on_segment
+from uavlab.city.voxels import distance_to_obstacle, squared_clearance, voxels_on_segment
 
 maps = arrays(bool, array_shapes(min_dims=3, max_dims=3, max_side=7), elements=st.booleans())
 on_grid = st.integers(-12, 12).map(lambda half: half / 2)
@@ -40,6 +40,20 @@ def test_clearance_on_larger_random_maps(density):
 def test_clearance_is_infinite_without_obstacles_and_zero_within():
     assert np.isinf(squared_clearance(np.zeros((3, 4, 5), bool))).all()
     assert not squared_clearance(np.ones((3, 4, 5), bool)).any()
+
+
+@given(maps, points, st.one_of(st.floats(0, 12), st.just(np.inf)))
+@settings(deadline=None, max_examples=300)
+def test_distance_from_any_point_is_that_to_the_nearest_box_as_far_as_it_is_to_be_exact(occupied, point, within):
+    clearance = np.sqrt(squared_clearance(occupied))
+    boxes = np.argwhere(occupied)
+    gap = np.maximum(np.maximum(boxes - point, point - boxes - 1), 0.0)
+    right = np.linalg.norm(gap, axis=1).min(initial=np.inf)
+    distance = distance_to_obstacle(occupied, 3.0 * clearance, 3.0, point, within)
+    if right <= within:
+        assert distance == pytest.approx(right, rel=0, abs=1e-12)
+    else:
+        assert within - 1e-12 <= distance <= right + 1e-12
 
 
 def crossed(start, end):

@@ -4,15 +4,18 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.interpolate import BSpline
 from scipy.spatial import ConvexHull
 
-from uavlab.spline import cubic_bspline, fitted, subdivided
+from uavlab.spline import basis_functions, bspline, cubic_bspline, fitted, subdivided
 
 AXES = st.integers(1, 3)
+FEWEST = {"phantom": 2, "clamped": 2, "none": 4}
+gaps = st.lists(st.one_of(st.just(0.0), st.floats(0.1, 3)), min_size=8, max_size=14).filter(lambda gaps: any(gaps[1:]))
+shares = arrays(float, 7, elements=st.floats(0, 1))
 
 
 def control_points(least=2, most=9, dimensions=AXES):
@@ -20,11 +23,20 @@ def control_points(least=2, most=9, dimensions=AXES):
     return shape.flatmap(lambda size: arrays(float, size, elements=st.floats(-100, 100)))
 
 
-def by_scipy(control, per_segment):
-    """Uniform knots, and a point before and after that continues the first and last leg."""
-    padded = np.vstack([2 * control[0] - control[1], control, 2 * control[-1] - control[-2]])
+def held(control, ends):
+    """The control points and those that hold the curve to its ends, one by one."""
+    first, last = control[0], control[-1]
+    if ends == "phantom":
+        return np.vstack([2 * first - control[1], control, 2 * last - control[-2]])
+    return np.vstack([first, first, control, last, last]) if ends == "clamped" else control
+
+
+def by_scipy(control, per_segment, ends="phantom", derivative=0):
+    """On uniform knots."""
+    padded = held(control, ends)
     curve = BSpline(np.arange(len(padded) + 4) - 3.0, padded, 3)
-    return curve(np.arange((len(control) - 1) * per_segment + 1) / per_segment)
+    t = np.arange((len(padded) - 3) * per_segment + 1) / per_segment
+    return (curve.derivative(derivative) if derivative else curve)(t)
 
 
 def length_of(points):
@@ -37,12 +49,34 @@ def polynomials(control):
     return np.array([np.polyfit(t, curve[4 * i : 4 * i + 5], 3) for i in range(len(control) - 1)])
 
 
-@settings(max_examples=200)
-@given(control_points(), st.integers(1, 12))
-def test_the_curve_is_that_of_scipy(control, per_segment):
-    curve = cubic_bspline(control, per_segment)
-    assert curve.shape == ((len(control) - 1) * per_segment + 1, control.shape[1])
-    assert curve == pytest.approx(by_scipy(control, per_segment), rel=0, abs=1e-12 * max(np.abs(control).max(), 1))
+@pytest.mark.parametrize("derivative", [0, 1, 2])
+@pytest.mark.parametrize("ends", FEWEST)
+@given(data=st.data(), per_segment=st.integers(1, 12))
+def test_the_curve_and_its_derivatives_are_those_of_scipy(ends, derivative, data, per_segment):
+    control = data.draw(control_points(FEWEST[ends]))
+    curve = cubic_bspline(control, per_segment, ends=ends, derivative=derivative)
+    segments = len(control) + {"phantom": -1, "clamped": 1, "none": -3}[ends]
+    assert curve.shape == (segments * per_segment + 1, control.shape[1])
+    expected = by_scipy(control, per_segment, ends, derivative)
+    assert curve == pytest.approx(expected, rel=0, abs=1e-12 * max(np.abs(control).max(), 1))
+
+
+def test_without_points_added_the_curve_misses_its_ends():
+    control = np.array([[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [12.0, 6.0], [12.0, 0.0]])
+    curve = cubic_bspline(control, ends="none")
+    assert curve[0] == pytest.approx((control[0] + 4 * control[1] + control[2]) / 6, abs=1e-14)
+    assert curve[-1] == pytest.approx((control[2] + 4 * control[3] + control[4]) / 6, abs=1e-14)
+
+
+@given(control_points(), st.integers(2, 9))
+def test_clamped_the_curve_starts_from_rest_along_the_first_leg(control, per_segment):
+    curve, velocity, second = (cubic_bspline(control, per_segment, ends="clamped", derivative=d) for d in range(3))
+    assert curve[0] == pytest.approx(control[0], abs=1e-12 * 100)
+    assert np.array_equal(curve[-1], control[-1])
+    for at_rest in (velocity[[0, -1]], second[[0, -1]]):
+        assert at_rest == pytest.approx(np.zeros_like(at_rest), abs=1e-12)
+    t = np.arange(per_segment)[:, None] / per_segment
+    assert curve[:per_segment] == pytest.approx(control[0] + t**3 / 6 * (control[1] - control[0]), abs=1e-11)
 
 
 @given(control_points(), st.integers(1, 5))
@@ -213,3 +247,147 @@ def test_wrong_control_points_are_refused(control, message):
 def test_a_wrong_number_of_points_per_segment_is_refused(per_segment):
     with pytest.raises(ValueError, match=f"per_segment must be a whole number of at least 1, got {per_segment}"):
         cubic_bspline([[0, 0], [1, 1]], per_segment)
+
+
+@pytest.mark.parametrize("ends", ["phantom", "clamped", "none"])
+def test_too_few_control_points_are_refused_with_the_number_that_it_takes(ends):
+    least = FEWEST[ends]
+    with pytest.raises(ValueError, match=f"control must be at least {least} points, .* a cubic segment takes four"):
+        cubic_bspline(np.zeros((least - 1, 3)), ends=ends)
+    assert cubic_bspline(np.zeros((least, 3)), 1, ends=ends).shape == ({"clamped": 4}.get(ends, 2), 3)
+
+
+@pytest.mark.parametrize("ends", ["open", None, 3, ("phantom",)])
+def test_unknown_ends_are_refused(ends):
+    with pytest.raises(ValueError, match=r"ends must be one of 'phantom', 'clamped', 'none', got "):
+        cubic_bspline(np.zeros((4, 2)), ends=ends)
+
+
+@pytest.mark.parametrize("derivative", [3, -1, 1.0, "1", None, np.array([0, 1])])
+def test_unknown_derivatives_are_refused(derivative):
+    with pytest.raises(ValueError, match=re.escape(f"derivative must be 0, 1 or 2, got {derivative!r}")):
+        cubic_bspline(np.zeros((4, 2)), derivative=derivative)
+
+
+def longer(knots, degree):
+    """Knots with more around, so that SciPy, which wants degree + 1 functions everywhere, knows these as well."""
+    around = np.arange(1, degree + 1)
+    return np.concatenate([knots[0] - around[::-1], knots, knots[-1] + around])
+
+
+@pytest.mark.parametrize("degree", range(6))
+@given(gaps=gaps, shares=shares)
+def test_basis_functions_are_those_of_scipy_on_any_knots(degree, gaps, shares):
+    knots = np.cumsum(gaps)
+    t = np.concatenate([knots[0] + shares * (knots[-1] - knots[0]), knots])
+    t = t[t < knots[-1]]
+    count = len(knots) - degree - 1
+    assert np.array_equal(basis_functions(t, knots, degree).shape, (len(t), count))
+    more = longer(knots, degree)
+    expected = BSpline(more, np.eye(len(more) - degree - 1), degree)(t)[:, degree : degree + count]
+    assert basis_functions(t, knots, degree) == pytest.approx(expected, rel=0, abs=1e-12)
+
+
+@pytest.mark.parametrize("degree", range(6))
+@given(inner=st.lists(st.floats(0.1, 3), min_size=1, max_size=6), shares=shares)
+def test_basis_functions_are_scipy_s_design_matrix_up_to_the_last_knot(degree, inner, shares):
+    rise = np.concatenate([[0.0], np.cumsum(inner)])
+    knots = np.concatenate([np.zeros(degree), rise, np.full(degree, rise[-1])])
+    t = np.concatenate([shares * rise[-1], rise])
+    expected = BSpline.design_matrix(t, knots, degree).toarray()
+    assert basis_functions(t, knots, degree) == pytest.approx(expected, rel=0, abs=1e-12)
+
+
+@pytest.mark.parametrize("degree", range(6))
+@given(gaps=gaps, shares=shares)
+def test_basis_functions_sum_to_one_where_all_overlap_and_to_less_beyond(degree, gaps, shares):
+    knots = np.cumsum(gaps)
+    low, high = knots[degree], knots[-degree - 1]
+    t = np.minimum(knots[0] + shares * (knots[-1] - knots[0]), knots[-1])
+    values = basis_functions(t, knots, degree)
+    whole = (low <= t) & (t < high)
+    assert (values > -1e-15).all()
+    assert values.sum(axis=1)[whole] == pytest.approx(np.ones(whole.sum()), abs=1e-12)
+    assert (values.sum(axis=1) <= 1 + 1e-12).all()
+
+
+@pytest.mark.parametrize("degree", range(6))
+def test_the_last_point_belongs_to_the_last_basis_function(degree):
+    knots = np.concatenate([np.zeros(degree), np.arange(4.0), np.full(degree, 3.0)])
+    values = basis_functions(3.0, knots, degree)
+    assert values.tolist() == [[0.0] * (degree + 2) + [1.0]]
+    if degree == 0:
+        knots = np.array([0.0, 1.0, 2.0, 2.0])  # an interval without length is nobody's
+        assert basis_functions([1.5, 2.0], knots, 0).tolist() == [[0, 1, 0], [0, 1, 0]]
+
+
+@pytest.mark.parametrize("degree", range(6))
+def test_as_printed_the_basis_functions_sum_to_two_at_inner_knots_whatever_the_degree(degree):
+    """The recursion hands the sum on: what degree 0 counts twice, the curve counts twice."""
+    knots = np.concatenate([np.zeros(degree), np.arange(6.0), np.full(degree, 5.0)])
+    t = np.array([0.0, 0.5, 1.0, 2.0, 2.3, 3.0, 4.0, 4.999, 5.0])
+    sums = basis_functions(t, knots, degree, as_printed=True).sum(axis=1)
+    assert sums == pytest.approx([1, 1, 2, 2, 1, 2, 2, 1, 1], abs=1e-12)
+    control = np.random.default_rng(degree).uniform(-1, 1, (degree + 5, 2))
+    right = basis_functions(t, knots, degree) @ control
+    drawn = basis_functions(t, knots, degree, as_printed=True) @ control
+    between = t != np.round(t)
+    assert drawn[between] == pytest.approx(right[between], abs=1e-14)
+    if degree:
+        assert drawn[[2, 3, 5, 6]] == pytest.approx(2 * right[[2, 3, 5, 6]], abs=1e-12)
+
+
+@given(control_points(least=4), st.integers(1, 6))
+def test_the_recursion_draws_the_curve_of_the_matrix(control, per_segment):
+    segments = len(control) - 3
+    t = np.arange(segments * per_segment + 1) / per_segment
+    by_recursion = basis_functions(t, np.arange(len(control) + 4) - 3.0, 3) @ control
+    by_matrix = cubic_bspline(control, per_segment, ends="none")
+    assert by_recursion == pytest.approx(by_matrix, rel=0, abs=1e-12 * max(np.abs(control).max(), 1))
+
+
+@pytest.mark.parametrize("degree", range(1, 6))
+@given(data=st.data(), t=shares)
+def test_a_curve_of_any_degree_is_scipy_s_on_clamped_knots(degree, data, t):
+    control = data.draw(control_points(degree + 1, degree + 7))
+    t = np.concatenate([t, [0.0, 1.0]])
+    knots = np.concatenate([np.zeros(degree), np.linspace(0, 1, len(control) - degree + 1), np.ones(degree)])
+    size = max(np.abs(control).max(), 1)
+    curve = bspline(control, t, degree)
+    assert curve == pytest.approx(BSpline(knots, control, degree)(t), rel=0, abs=1e-12 * size)
+    assert curve[-2:] == pytest.approx(control[[0, -1]], rel=0, abs=1e-12 * size)
+
+
+@given(control_points(), shares)
+def test_degree_one_is_the_polyline(control, t):
+    even = np.linspace(0, 1, len(control))
+    polyline = np.stack([np.interp(t, even, axis) for axis in control.T], axis=1)
+    assert bspline(control, t, 1) == pytest.approx(polyline, rel=0, abs=1e-12 * 100)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: basis_functions(0.5, [0, 1, 0.5, 2, 3], 3), "knots must be at least 5 numbers that rise"),
+        (lambda: basis_functions(0.5, [0, 1, 2, 3], 3), "knots must be at least 5 numbers that rise"),
+        (lambda: basis_functions(0.5, np.ones(8), 3), "some of them may be equal; got array([1."),
+        (lambda: basis_functions(0.5, np.ones((2, 8)), 3), "knots must be at least 5 numbers"),
+        (lambda: basis_functions(0.5, [0, 1, np.nan, 3, 4], 3), "knots must be finite, got nan"),
+        (lambda: basis_functions([0.5, 4.1], np.arange(5), 3), "t must be from 0 to 4 (the knots), got 4.1"),
+        (lambda: basis_functions(-0.1, np.arange(5), 3), "t must be from 0 to 4 (the knots), got -0.1"),
+        (lambda: basis_functions(np.nan, np.arange(5), 3), "t must be from 0 to 4 (the knots), got nan"),
+        (lambda: basis_functions(1, np.arange(5), -1), "degree must be a whole number of at least 0, got -1"),
+        (lambda: basis_functions(1, np.arange(5), 1.5), "degree must be a whole number of at least 0, got 1.5"),
+        (
+            lambda: bspline(np.zeros((3, 2)), 0.5),
+            "control must be more than 3 points of shape (N, D), got shape (3, 2)",
+        ),
+        (lambda: bspline(np.zeros((2, 5, 2)), 0.5, 1), "shape (N, D), got shape (2, 5, 2)"),
+        (lambda: bspline([[0, 0], [np.nan, 1]], 0.5, 1), "control must be finite, got nan"),
+        (lambda: bspline(np.zeros((4, 2)), 1.01), "t must be from 0 to 1 (the knots), got 1.01"),
+        (lambda: bspline(np.zeros((4, 2)), 0.5, 0), "degree must be a whole number of at least 1, got 0"),
+    ],
+)
+def test_wrong_knots_parameters_and_degrees_are_refused(call, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        call()

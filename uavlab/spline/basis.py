@@ -48,8 +48,7 @@ def cubic_bspline(
     points = checks.numbers("control", control)
     checks.whole("per_segment", per_segment, least=1)
     checks.one_of("ends", ends, ENDS)
-    if derivative not in (0, 1, 2):
-        raise ValueError(f"derivative must be 0, 1 or 2, got {derivative!r}")
+    checked_derivative(derivative)
     checked_count(points, ends)
     checks.finite("control", points)
     padded = with_ends(points, ends)
@@ -63,6 +62,11 @@ def cubic_bspline(
     else:
         last = (FACTORS[derivative] @ BASIS @ windows[..., -1, :, :])[..., None, :]
     return np.concatenate([curve, last], axis=-2)
+
+
+def checked_derivative(derivative: int) -> None:
+    if not isinstance(derivative, int | np.integer) or derivative not in (0, 1, 2):
+        raise ValueError(f"derivative must be 0, 1 or 2, got {derivative!r}")
 
 
 def checked_count(points: np.ndarray, ends: str) -> None:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.spline.curve import Curve
+from uavlab.spline.curve import CONTACT, Curve, checked_bank
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import wind_drag
 
@@ -51,7 +51,7 @@ class Limit:
         return self.worst >= self.limit if self.at_least else self.worst <= self.limit
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Feasibility:
     """What `feasibility` found.
 
@@ -92,6 +92,8 @@ class Feasibility:
         widths = [max(map(len, column)) for column in zip(*table, strict=True)]
         return "\n".join("  ".join(map(str.ljust, row, widths)).rstrip() for row in table)
 
+    __repr__ = __str__
+
     def _repr_html_(self) -> str:
         heads = "".join(
             f"<th>{head}</th>" for head in ("limit", f"at {self.speed:.3g} m/s", "worst", "after, at", "met")
@@ -124,11 +126,11 @@ def feasibility(
     wind : (2,) or (3,) array
         Mean wind, where the air moves to [m/s].
     bank : float
-        Bank angle that turns may take [rad]; limits the level curvature to g·tan(bank)/v².
+        Bank angle that turns may take [rad], between 0 and π/2; limits the level curvature to g·tan(bank)/v².
     max_pitch : float
-        Steepest climb or descent [rad].
+        Steepest climb or descent [rad], above 0, at most π/2.
     min_clearance : float, optional
-        Least distance to obstacles [m]; by default half the body.
+        Least distance to obstacles [m]; by default half the body, less the 2 % of contact that `smooth` allows.
     as_printed : bool
         RISK-ACO's and PSO-BAS's own check: curvature below 1 per voxel, pitch within `max_pitch`. It doesn't know the
         speed.
@@ -151,21 +153,22 @@ def feasibility(
     checks.positive_number("speed", speed)
     pitch = np.degrees(np.abs(curve.pitch))
     checks.positive_number("max_pitch", max_pitch)
+    checks.within("max_pitch", max_pitch, 0.0, np.pi / 2, "rad (from degrees: numpy.radians)")
     steepest = upper(curve, "pitch", "°", np.degrees(max_pitch), pitch)
     if as_printed:
         per_voxel = upper(curve, "curvature", "per voxel", 1.0, curve.curvature * city.cell)
         return Feasibility((per_voxel, steepest), speed)
-    checks.positive_number("bank", bank)
-    sharpest = GRAVITY * np.tan(bank) / speed**2
+    sharpest = GRAVITY * np.tan(checked_bank(bank)) / speed**2
     thrust, tilt = tilted_thrust(curve, uav, speed, wind)
     air_speed = np.linalg.norm(speed * curve.tangent - checks.three("wind", wind), axis=1)
-    body = uav.diameter / 2 if min_clearance is None else min_clearance
+    body = (1 - CONTACT) * uav.diameter / 2 if min_clearance is None else min_clearance
     checks.not_negative_number("min_clearance", body)
     distances = curve.least_distances(city, body + city.cell)
-    nearest = int(np.argmin(distances))
+    least = float(distances.min())
+    nearest = int(np.flatnonzero(distances <= (1 + 1e-9) * least)[0])
     return Feasibility(
         (
-            Limit("clearance", "m", body, float(distances[nearest]), True, *whereabouts(curve, nearest)),
+            Limit("clearance", "m", body, least, True, *whereabouts(curve, nearest)),
             upper(curve, "curvature", "1/m", sharpest, curve.level_curvature),
             steepest,
             upper(curve, "thrust", "N", uav.thrust, thrust),
@@ -178,8 +181,9 @@ def feasibility(
 
 def upper(curve: Curve, name: str, unit: str, limit: float, values: np.ndarray) -> Limit:
     """An upper limit and where the values (P,) at the curve's points are worst."""
-    worst = int(np.argmax(values))
-    return Limit(name, unit, float(limit), float(values[worst]), False, *whereabouts(curve, worst))
+    worst = float(values.max())
+    first = int(np.flatnonzero(values >= (1 - 1e-9) * worst)[0])  # of equals, whatever the rounding
+    return Limit(name, unit, float(limit), worst, False, *whereabouts(curve, first))
 
 
 def whereabouts(curve: Curve, number: int) -> tuple[float, tuple[float, ...]]:
@@ -224,6 +228,7 @@ def greatest_speed(curve: Curve, uav: UAV, wind: npt.ArrayLike = (0.0, 0.0, 0.0)
     checks.instance("curve", curve, Curve)
     checks.instance("uav", uav, UAV)
     wind = checks.three("wind", wind)
+    checked_bank(bank)
 
     def flyable(speed: float) -> bool:
         thrust, tilt = tilted_thrust(curve, uav, speed, wind)

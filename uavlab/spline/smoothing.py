@@ -5,17 +5,11 @@ import numpy as np
 from uavlab import checks
 from uavlab.city import City
 from uavlab.route import Route
-from uavlab.spline.curve import Curve, between
+from uavlab.spline.curve import CONTACT, Curve, between
 from uavlab.vehicle import UAV
 
 MIDPOINT_ROUNDS = 6
 """Then a leg has 64 parts. What still touches is held by points that stand twice or three times."""
-
-CONTACT = 0.02
-"""Share of its radius by which a body may overlap an obstacle before that counts as contact; half of it for the route.
-
-The distance between two points a quarter of the radius apart is known to 1/128 of the radius.
-"""
 
 
 def smooth(route: Route, city: City, uav: UAV, *, min_clearance: float = 0.0) -> Curve:
@@ -115,7 +109,10 @@ def touching_segments(curve: Curve, city: City, uav: UAV, blocked: np.ndarray) -
 
 def enters(points: np.ndarray, city: City, blocked: np.ndarray) -> bool:
     """Whether a polyline passes through a blocked voxel or leaves the map; by exact traversal."""
-    index = city.voxels_along(points)[0]
+    voxels = city.cell_of(points)
+    stays = (voxels[:-1] == voxels[1:]).all(axis=1)
+    crossed = [city.voxels_along(points[leg : leg + 2])[0] for leg in np.flatnonzero(~stays)]
+    index = np.concatenate([voxels[:-1][stays], *crossed])
     outside = ((index < 0) | (index >= city.shape)).any()
     return bool(outside or blocked[tuple(index.T)].any())
 
@@ -130,9 +127,9 @@ def with_midpoints(control: np.ndarray, wrong: np.ndarray) -> np.ndarray:
 
 def with_repeated(control: np.ndarray, wrong: np.ndarray) -> np.ndarray:
     """Control points where those at the ends of wrong segments stand once more, at most three times."""
-    here = np.zeros(len(control), dtype=bool)
-    here[:-1] |= wrong
-    here[1:] |= wrong
-    new = np.concatenate([[True], (np.diff(control, axis=0) != 0).any(axis=1)])
-    times = np.bincount(np.cumsum(new) - 1)[np.cumsum(new) - 1]
-    return np.insert(control, np.flatnonzero(here & new & (times < 3)), control[here & new & (times < 3)], axis=0)
+    first = np.concatenate([[True], (np.diff(control, axis=0) != 0).any(axis=1)])
+    group = np.cumsum(first) - 1  # those that stand together
+    here = np.zeros(group[-1] + 1, dtype=bool)
+    here[group[:-1][wrong]] = here[group[1:][wrong]] = True
+    more = np.flatnonzero(first)[here & (np.bincount(group) < 3)]
+    return np.insert(control, more, control[more], axis=0)

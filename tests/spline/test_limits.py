@@ -1,0 +1,359 @@
+"""What a UAV can fly: forces on circles, dips and straight lines against closed forms, and the table of limits."""
+
+import re
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from uavlab.city import City
+from uavlab.spline import Curve, Feasibility, feasibility, greatest_speed, tilted_thrust
+from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR, RISK_QUADROTOR
+from uavlab.weather.forces import STANDARD_AIR
+
+OPEN = City(np.zeros((40, 40, 40), bool), cell=5.0)
+SLIPPERY = replace(RISK_QUADROTOR, drag_area=1e-12)
+MASS = RISK_QUADROTOR.weight / GRAVITY
+NAMES = ["clearance", "curvature", "pitch", "thrust", "tilt", "air speed"]
+
+
+def circle(radius, height=20.0, count=73, turn=5.0):
+    """A level circle, to 0.13 % of its radius; without its straight ends `count` − 3 segments of it are left."""
+    angle = np.radians(turn) * np.arange(count)
+    out = radius * 3 / (2 + np.cos(np.radians(turn)))
+    return Curve(np.stack([100 + out * np.cos(angle), 100 + out * np.sin(angle), 0 * angle + height], axis=1), step=0.2)
+
+
+def inner(curve):
+    """Which of its points are not on the first or the last segment, which run out straight."""
+    return (curve.parameter >= 1) & (curve.parameter <= curve.parameter[-1] - 1)
+
+
+def straight(direction=(1.0, 0.0, 0.0), length=50.0):
+    start = np.array([20.0, 100.0, 50.0])
+    return Curve(start + np.linspace(0, length, 6)[:, None] * np.array(direction) / np.linalg.norm(direction))
+
+
+def upright(radius, sign):
+    """The upper half of a vertical circle, or the lower one."""
+    angle = np.radians(5.0) * np.arange(5, 32)
+    out = radius * 3 / (2 + np.cos(np.radians(5.0)))
+    return Curve(np.stack([out * np.cos(angle), 0 * angle, sign * out * np.sin(angle)], axis=1) + 50.0, step=0.1)
+
+
+def corner(times):
+    return Curve([(20, 20, 20), *[(50, 20, 20)] * times, (50, 50, 20)])
+
+
+@pytest.mark.parametrize("speed", [3.0, 8.0, 16.0])
+@pytest.mark.parametrize("radius", [5.0, 20.0, 60.0])
+def test_without_drag_a_level_circle_takes_the_weight_and_v_squared_over_r(radius, speed):
+    curve = circle(radius)
+    thrust, tilt = (values[inner(curve)] for values in tilted_thrust(curve, SLIPPERY, speed))
+    across = speed**2 / radius
+    assert thrust == pytest.approx(np.full(len(thrust), MASS * np.hypot(GRAVITY, across)), rel=3e-3)
+    assert np.tan(tilt) == pytest.approx(np.full(len(tilt), across / GRAVITY), rel=3e-3)
+
+
+@pytest.mark.parametrize("radius", [5.0, 20.0])
+@pytest.mark.parametrize("wind", [(0.0, 0.0), (6.0, -2.0), (0.0, 9.0, 1.5)])
+def test_drag_on_a_level_circle_is_that_of_the_air_that_comes_towards_it(radius, wind):
+    """T = m(g ẑ + v²/r·inwards) − ½ρCS|w − v|(w − v), at every angle of the circle."""
+    uav, speed, curve = LIGHT_QUADROTOR, 7.0, circle(radius)
+    here = inner(curve)
+    outwards = (curve.points[here] - (100, 100, 20)) / radius
+    forwards = np.stack([-outwards[:, 1], outwards[:, 0], 0 * outwards[:, 2]], axis=1)
+    relative = np.array((*wind, 0.0)[:3]) - speed * forwards
+    drag = 0.5 * STANDARD_AIR * uav.drag_area * np.linalg.norm(relative, axis=1, keepdims=True) * relative
+    needed = uav.mass * (np.array([0, 0, GRAVITY]) - speed**2 / radius * outwards) - drag
+    thrust, tilt = tilted_thrust(curve, uav, speed, wind)
+    assert thrust[here] == pytest.approx(np.linalg.norm(needed, axis=1), rel=5e-3)
+    upright = needed[:, 2] / np.linalg.norm(needed, axis=1)
+    assert np.cos(tilt[here]) == pytest.approx(upright, abs=5e-3)
+
+
+@pytest.mark.parametrize("uav", [RISK_QUADROTOR, LIGHT_QUADROTOR, LIGHT_QUADROTOR.loaded(0.6)])
+def test_on_a_straight_line_thrust_holds_weight_and_drag(uav):
+    drag = 0.5 * STANDARD_AIR * uav.drag_area * 10.0**2
+    thrust, tilt = tilted_thrust(straight(), uav, 10.0)
+    assert thrust == pytest.approx(np.full(len(thrust), np.hypot(uav.weight, drag)), rel=1e-9)
+    assert tilt == pytest.approx(np.full(len(tilt), np.arctan(drag / uav.weight)), rel=1e-9)
+
+
+def test_with_the_wind_as_fast_as_the_wind_it_is_like_hover():
+    thrust, tilt = tilted_thrust(straight((3, 4, 0)), LIGHT_QUADROTOR, 5.0, wind=(3.0, 4.0))
+    assert thrust == pytest.approx(np.full(len(thrust), LIGHT_QUADROTOR.weight), rel=1e-9)
+    assert tilt == pytest.approx(np.zeros(len(tilt)), abs=1e-9)
+
+
+@pytest.mark.parametrize(("sign", "name"), [(1, "dip"), (-1, "hump")])
+def test_a_dip_takes_more_thrust_and_a_hump_less(sign, name):
+    """At the lowest point of a vertical turn m(g + v²/r), at the highest m(g − v²/r), both without tilt."""
+    curve = upright(30.0, -sign)
+    level = np.argmin(np.abs(curve.pitch))
+    speed = 8.0
+    thrust, tilt = tilted_thrust(curve, SLIPPERY, speed)
+    assert thrust[level] == pytest.approx(MASS * (GRAVITY + sign * speed**2 / 30), rel=5e-3), name
+    assert tilt[level] == pytest.approx(0, abs=0.02)
+
+
+def test_faster_than_a_hump_allows_the_thrust_points_down():
+    curve = upright(5.0, 1)
+    level = np.argmin(np.abs(curve.pitch))
+    assert tilted_thrust(curve, SLIPPERY, 16.0)[1][level] == pytest.approx(np.pi, abs=0.1)
+
+
+def test_at_a_corner_thrust_is_infinite_and_nothing_warns():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        thrust, tilt = tilted_thrust(corner(3), RISK_QUADROTOR, 1.0)
+        assert np.isinf(thrust).sum() == 1
+        assert np.degrees(tilt[np.isinf(thrust)]) == pytest.approx(90)
+        report = feasibility(corner(3), RISK_QUADROTOR, OPEN, speed=1.0)
+    assert not report.feasible
+    for name in ("curvature", "thrust"):
+        assert report[name].worst == np.inf
+        assert report[name].place == pytest.approx((50, 20, 20))
+
+
+def test_a_straight_level_flight_meets_all_limits():
+    report = feasibility(straight(), RISK_QUADROTOR, OPEN)
+    assert isinstance(report, Feasibility)
+    assert report.feasible
+    assert report.speed == RISK_QUADROTOR.cruise_speed
+    assert [limit.name for limit in report.limits] == NAMES
+    assert all(limit.met for limit in report.limits)
+    assert report["clearance"].worst == np.inf
+    assert report["curvature"].worst == pytest.approx(0, abs=1e-12)
+    assert report["pitch"].worst == 0
+
+
+@pytest.mark.parametrize("bank", [20.0, 30.0, 45.0])
+@pytest.mark.parametrize("speed", [4.0, 16.0])
+def test_curvature_is_limited_to_what_the_bank_holds_at_that_speed(speed, bank):
+    curve = circle(20.0)
+    row = feasibility(curve, RISK_QUADROTOR, OPEN, speed=speed, bank=np.radians(bank))["curvature"]
+    assert row.limit == pytest.approx(GRAVITY * np.tan(np.radians(bank)) / speed**2)
+    assert row.unit == "1/m"
+    assert row.worst == curve.level_curvature.max() == pytest.approx(1 / 20, rel=3e-3)
+    assert row.met == (speed == 4.0)
+
+
+def test_only_the_level_part_of_the_curvature_is_held_by_the_bank():
+    curve = Curve([(20, 50, 50), (25, 50, 50), (30, 50, 52), (35, 50, 56)])
+    report = feasibility(curve, RISK_QUADROTOR, OPEN, speed=3.0)
+    assert report["curvature"].worst == curve.level_curvature.max()
+    assert report["curvature"].worst < 0.5 * curve.curvature.max()
+
+
+@pytest.mark.parametrize("gap", [0.15, 0.5, 2.0])
+def test_clearance_is_least_where_the_curve_passes_the_box(gap):
+    occupied = np.zeros((40, 20, 10), bool)
+    occupied[25, 5, 5] = True
+    curve = Curve([(2, 6 + gap, 5.5), (20, 6 + gap, 5.5), (38, 6 + gap, 5.5)], step=0.02)
+    report = feasibility(curve, RISK_QUADROTOR, City(occupied), speed=5.0)
+    row = report["clearance"]
+    assert row.at_least
+    assert row.limit == pytest.approx(0.98 * RISK_QUADROTOR.diameter / 2)  # the contact that `smooth` allows
+    assert row.met == report.feasible == (gap > 0.2)
+    if gap <= 0.5:  # beyond what is asked for by a voxel, the distance is a lower bound only
+        assert row.worst == pytest.approx(gap, abs=1e-3)
+        assert 25 - 0.1 <= row.place[0] <= 26
+        assert row.distance == pytest.approx(row.place[0] - 2, abs=1e-6)
+    assert row.worst <= gap
+    asked = feasibility(curve, RISK_QUADROTOR, City(occupied), speed=5.0, min_clearance=gap + 0.3)["clearance"]
+    assert (asked.limit, asked.met) == (gap + 0.3, False)
+    assert asked.worst == pytest.approx(gap, abs=1e-3)
+
+
+@pytest.mark.parametrize(("climb", "steepest", "met"), [(45.0, 60.0, True), (-45.0, 60.0, True), (-45.0, 30.0, False)])
+def test_pitch_counts_up_and_down(climb, steepest, met):
+    curve = straight((1, 0, np.tan(np.radians(climb))))
+    row = feasibility(curve, RISK_QUADROTOR, OPEN, speed=5.0, max_pitch=np.radians(steepest))["pitch"]
+    assert (row.unit, row.met) == ("°", met)
+    assert row.worst == pytest.approx(45)
+    assert row.limit == pytest.approx(steepest)
+
+
+def test_the_limit_of_pitch_is_by_default_that_of_the_paper():
+    assert feasibility(straight(), RISK_QUADROTOR, OPEN)["pitch"].limit == pytest.approx(60)
+
+
+def test_thrust_tilt_and_air_speed_are_the_worst_along_the_curve():
+    curve, wind = circle(40.0), (5.0, 3.0)
+    report = feasibility(curve, LIGHT_QUADROTOR, OPEN, speed=9.0, wind=wind)
+    thrust, tilt = tilted_thrust(curve, LIGHT_QUADROTOR, 9.0, wind)
+    assert report["thrust"].worst == thrust.max()
+    assert report["tilt"].worst == pytest.approx(np.degrees(tilt.max()))
+    assert (report["thrust"].limit, report["tilt"].limit) == (28.0, pytest.approx(60))
+    head_on = np.argmax(np.linalg.norm(9.0 * curve.tangent - (5, 3, 0), axis=1))
+    assert report["air speed"].worst == pytest.approx(9.0 + np.hypot(5, 3), rel=1e-3)
+    assert report["air speed"].limit == LIGHT_QUADROTOR.top_speed
+    assert report["air speed"].place == tuple(curve.points[head_on])
+    assert report["air speed"].distance == curve.distance[head_on]
+    assert curve.tangent[head_on] @ (5, 3, 0) == pytest.approx(-np.hypot(5, 3), rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("wind", "worst"), [((0, 0), 16), ((-6, 0), 22), ((10, 0), 6), ((0, 12, 0), 20), ((0, 0, 5), 16.7631)]
+)
+def test_air_speed_is_that_against_the_wind(wind, worst):
+    row = feasibility(straight(), RISK_QUADROTOR, OPEN, wind=wind)["air speed"]
+    assert row.worst == pytest.approx(worst, rel=1e-5)
+    assert row.met == (worst <= 20)
+
+
+def test_one_limit_that_is_not_met_is_enough():
+    report = feasibility(straight(), RISK_QUADROTOR, OPEN, wind=(-6, 0))
+    assert [limit.name for limit in report.limits if not limit.met] == ["air speed"]
+    assert not report.feasible
+
+
+def test_as_printed_the_check_passes_what_nobody_flies_at_that_speed():
+    """A circle of 5 m is a curvature of 0.2 per voxel of 1 m; at 16 m/s it takes 5.3 times the weight."""
+    city = City(np.zeros((200, 200, 40), bool))
+    curve = circle(5.0)
+    printed = feasibility(curve, RISK_QUADROTOR, city, as_printed=True)
+    assert printed.feasible
+    assert [(limit.name, limit.unit, limit.limit) for limit in printed.limits] == [
+        ("curvature", "per voxel", 1.0),
+        ("pitch", "°", pytest.approx(60)),
+    ]
+    assert printed["curvature"].worst == pytest.approx(0.2, rel=3e-3)
+    right = feasibility(curve, RISK_QUADROTOR, city)
+    assert [limit.name for limit in right.limits if not limit.met] == ["curvature", "thrust", "tilt"]
+    assert right["thrust"].worst / RISK_QUADROTOR.weight == pytest.approx(np.hypot(1, 16**2 / 5 / GRAVITY), rel=5e-3)
+    slow = feasibility(curve, RISK_QUADROTOR, city, speed=3.0, as_printed=True)
+    assert slow.limits == printed.limits  # it doesn't know the speed
+
+
+@pytest.mark.parametrize("cell", [1.0, 4.0, 6.0])
+def test_as_printed_a_curve_is_the_less_flyable_the_larger_the_voxels(cell):
+    row = feasibility(circle(5.0), RISK_QUADROTOR, City(np.zeros((40, 40, 10), bool), cell), as_printed=True)[
+        "curvature"
+    ]
+    assert row.worst == pytest.approx(cell / 5, rel=3e-3)
+    assert row.met == (cell < 5)
+
+
+@pytest.mark.parametrize("uav", [RISK_QUADROTOR, LIGHT_QUADROTOR])
+@pytest.mark.parametrize("wind", [(0.0, 0.0), (4.0, -3.0), (0.0, 0.0, 2.0)])
+@pytest.mark.parametrize("radius", [2.0, 10.0, 40.0])
+def test_feasibility_flips_at_the_greatest_speed(uav, wind, radius):
+    curve = circle(radius)
+    speed = greatest_speed(curve, uav, wind)
+    assert speed > 0
+    assert feasibility(curve, uav, OPEN, speed=speed, wind=wind).feasible
+    assert not feasibility(curve, uav, OPEN, speed=speed + 0.0011, wind=wind).feasible
+
+
+@pytest.mark.parametrize("bank", [10.0, 25.0])
+def test_on_a_circle_without_wind_the_bank_limits_the_greatest_speed(bank):
+    speed = greatest_speed(circle(10.0), RISK_QUADROTOR, bank=np.radians(bank))
+    assert speed == pytest.approx(np.sqrt(GRAVITY * 10 * np.tan(np.radians(bank))), rel=3e-3)
+
+
+def test_on_a_circle_where_the_bank_would_allow_more_the_tilt_limits_the_greatest_speed():
+    speed = greatest_speed(circle(10.0), SLIPPERY, bank=np.radians(45))
+    assert speed == pytest.approx(np.sqrt(GRAVITY * 10 * np.tan(SLIPPERY.max_tilt)), rel=3e-3)
+
+
+def test_where_bank_and_tilt_would_allow_more_the_thrust_limits_the_greatest_speed():
+    """T² = m²(g² + v⁴/r²)."""
+    weak = replace(SLIPPERY, thrust=1.1 * SLIPPERY.weight)
+    speed = greatest_speed(circle(10.0), weak, bank=np.radians(45))
+    assert speed == pytest.approx(np.sqrt(GRAVITY * 10 * np.sqrt(1.1**2 - 1)), rel=3e-3)
+
+
+def test_on_a_straight_line_the_top_speed_in_the_air_limits_the_greatest_speed():
+    for wind, most in (((0, 0), 20), ((-5, 0), 15), ((5, 0), 25), ((25, 0), 45), ((0, 12), 16)):
+        assert greatest_speed(straight(), RISK_QUADROTOR, wind) == pytest.approx(most, abs=0.0011)
+    assert greatest_speed(straight(), RISK_QUADROTOR, (-21, 0)) == 0
+
+
+def test_at_a_corner_no_speed_is_slow_enough():
+    assert greatest_speed(corner(3), RISK_QUADROTOR) == 0
+    assert greatest_speed(corner(2), RISK_QUADROTOR) > 0
+    assert greatest_speed(corner(2), RISK_QUADROTOR) < greatest_speed(corner(1), RISK_QUADROTOR)
+
+
+def test_what_can_t_be_held_in_the_wind_flies_at_no_speed():
+    heavy = LIGHT_QUADROTOR.loaded(1.2)
+    assert greatest_speed(circle(40.0), heavy, (17.0, 0)) == 0
+    assert greatest_speed(circle(40.0), LIGHT_QUADROTOR, (17.0, 0)) > 0
+
+
+def test_the_report_is_a_table_to_print():
+    report = feasibility(circle(5.0), RISK_QUADROTOR, OPEN)
+    lines = str(report).splitlines()
+    assert lines[0].split() == ["limit", "at", "16", "m/s", "worst", "after,", "at", "met"]
+    assert [line.split("  ")[0] for line in lines[1:]] == NAMES
+    by_name = dict(zip(NAMES, lines[1:], strict=True))
+    row = report["curvature"]
+    assert "≤ 0.0221 1/m" in by_name["curvature"]
+    assert f"{row.worst:.3g} 1/m" in by_name["curvature"]
+    assert f"{row.distance:.1f} m, (" in by_name["curvature"]
+    assert by_name["curvature"].endswith("NO")
+    assert "≥ 0.196 m" in by_name["clearance"]
+    assert by_name["pitch"].endswith("yes")
+    assert (
+        len({line.index(entry) for line, entry in zip(lines[1:], [row[1] for row in report.rows()], strict=True)}) == 1
+    )
+
+
+def test_the_report_is_a_table_in_a_notebook():
+    report = feasibility(circle(5.0), RISK_QUADROTOR, OPEN)
+    page = report._repr_html_()
+    assert page.startswith("<table>")
+    assert page.endswith("</table>")
+    assert page.count("<tr>") == page.count("</tr>") == 1 + len(NAMES)
+    assert page.count("<th>") == 5
+    cells = re.findall(r"<td>(.*?)</td>", page)
+    assert cells == [cell for row in report.rows() for cell in row]
+
+
+def test_an_unknown_limit_is_refused_with_those_that_are():
+    with pytest.raises(ValueError, match=r"name must be one of 'clearance', 'curvature', .* got 'comfort'"):
+        feasibility(straight(), RISK_QUADROTOR, OPEN)["comfort"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"curve": [(0, 0, 0), (1, 1, 1)]}, "curve must be a Curve, got list: smooth(route, city, uav) makes one"),
+        ({"uav": "quadrotor"}, "uav must be a UAV, got str"),
+        ({"city": None}, "city must be a City, got NoneType"),
+        ({"speed": 0.0}, "speed must be finite and above 0, got 0"),
+        ({"speed": np.nan}, "speed must be finite and above 0, got nan"),
+        ({"speed": [5.0, 6.0]}, "speed must be one number, got an array of shape (2,)"),
+        ({"wind": 5.0}, "wind must be two or three finite numbers"),
+        ({"wind": (1, np.nan)}, "wind must be two or three finite numbers"),
+        ({"bank": 30.0}, "rad (from degrees: numpy.radians), got 30"),
+        ({"bank": 0.0}, "bank must be from"),
+        ({"max_pitch": 60.0}, "rad (from degrees: numpy.radians), got 60"),
+        ({"max_pitch": 0.0}, "max_pitch must be finite and above 0"),
+        ({"min_clearance": -0.1}, "min_clearance must be finite and at least 0, got -0.1"),
+        ({"min_clearance": np.inf}, "min_clearance must be finite and at least 0, got inf"),
+        ({"as_printed": True, "max_pitch": 60.0}, "max_pitch must be from"),
+    ],
+)
+def test_wrong_questions_about_feasibility_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        feasibility(**({"curve": straight(), "uav": RISK_QUADROTOR, "city": OPEN} | arguments))
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: greatest_speed("curve", RISK_QUADROTOR), "curve must be a Curve, got str"),
+        (lambda: greatest_speed(straight(), 1.38), "uav must be a UAV, got float"),
+        (lambda: greatest_speed(straight(), RISK_QUADROTOR, (1, 2, 3, 4)), "wind must be two or three finite numbers"),
+        (lambda: greatest_speed(straight(), RISK_QUADROTOR, bank=30), "rad (from degrees: numpy.radians), got 30"),
+        (lambda: tilted_thrust(straight(), RISK_QUADROTOR, 0.0), "speed must be finite and above 0, got 0"),
+        (lambda: tilted_thrust(straight(), RISK_QUADROTOR, 5.0, np.inf), "wind must be two or three finite numbers"),
+    ],
+)
+def test_wrong_questions_about_speed_and_thrust_are_refused(call, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        call()

@@ -1,0 +1,280 @@
+"""Exercises of chapter 11, B-splines: curvature, a curve through its waypoints, and slowing down only where it bends.
+
+A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
+by how they are written.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from uavlab.exercises import NOTHING
+from uavlab.spline import cubic_bspline
+
+
+def answers_to(
+    function: Callable[..., Any], questions: list[tuple[Any, ...]], shapes: list[tuple[int, ...]], what: str
+) -> tuple[list[np.ndarray], str]:
+    """What a function answers to questions, or a hint why that isn't even of the right kind."""
+    given: list[np.ndarray] = []
+    for question, shape in zip(questions, shapes, strict=True):
+        copies = [np.copy(part) if np.ndim(part) else part for part in question]
+        answer = function(*copies)
+        if answer is None:
+            return given, NOTHING
+        if any(not np.array_equal(a, b) for a, b in zip(copies, question, strict=True)):
+            return given, "Your function changes an array that it was given. The caller may still need it: make a copy."
+        values = np.asarray(answer, dtype=float)
+        if values.shape != shape:
+            return given, f"{what} has the shape {shape} here, yours has {values.shape}."
+        given.append(values)
+    return given, ""
+
+
+def alike(given: list[np.ndarray], wanted: list[np.ndarray]) -> bool:
+    return all(np.allclose(a, b, rtol=1e-7, atol=1e-9) for a, b in zip(given, wanted, strict=True))
+
+
+def exercise_1(curvature: Callable[..., Any]) -> str:
+    """11.1: the curvature of a curve in space, by any parameter."""
+    rng = np.random.default_rng(1110)
+    questions = [tuple(rng.normal(0, size, (2, 6, 3))) for size in (0.5, 1.0, 3.0)]
+    given, hint = answers_to(curvature, questions, [(6,)] * 3, "The curvature")
+    if hint:
+        return hint
+    if alike(given, [bent(*question) for question in questions]):
+        return ""
+    for how, mistaken in CURVATURE_MISTAKES:
+        if alike(given, [how(*question) for question in questions]):
+            return mistaken
+    return (
+        "Try it on a circle of radius 5, r = 5·(cos t, sin t, 0): your answer must be 0.2 everywhere, also when t runs "
+        f"twice as fast. For first = {np.round(questions[0][0][0], 2)} and second = {np.round(questions[0][1][0], 2)} "
+        f"yours is {given[0][0]:.4f}."
+    )
+
+
+def size(vectors: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(vectors, axis=1)
+
+
+def bent(first: np.ndarray, second: np.ndarray, power: float = 3.0) -> np.ndarray:
+    return size(np.cross(first, second)) / size(first) ** power
+
+
+SQUARED = "You use |r′|², a sum of squares: that is already the second power. Which power of it is |r′|³?"
+CURVATURE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], str]] = [
+    (
+        lambda first, second: bent(first, second, 4 / 3),
+        "The exponent of the sum of squares is the wrong way up: it isn't 2/3. What does a circle of 5 m give?",
+    ),
+    (
+        lambda first, second: bent(first, second, 2 / 3),
+        "The exponent is the wrong way up: 2/3 of |r′|. What does a circle of 5 m give that is run through twice as "
+        "fast?",
+    ),
+    (lambda first, second: bent(first, second, 6.0), SQUARED),
+    (
+        lambda first, second: bent(first, second, 2.0),
+        "You divide by |r′|². Run through the same circle twice as fast: |r′| doubles and |r″| becomes four times as "
+        "large. By which power must one divide, for κ to stay the same?",
+    ),
+    (
+        lambda first, second: size(second),
+        "That is |r″|: the curvature only where the curve runs one metre per unit of the parameter. Here it doesn't.",
+    ),
+    (
+        lambda first, second: size(second) / size(first) ** 2,
+        "You count all of r″. The part of it along the curve makes it faster and doesn't bend it.",
+    ),
+    (
+        lambda first, second: size(np.cross(first, second)),
+        "That is the numerator alone.",
+    ),
+    (
+        lambda first, second: bent(first * (1, 1, 0), second * (1, 1, 0)),
+        "You leave out the height: that is the curvature of the ground plan.",
+    ),
+    (
+        lambda first, second: np.cross(first, second)[:, 2] / size(first[:, :2]) ** 3,
+        "That is the curvature of the ground plan, with a sign for left and right. This curve lies in space.",
+    ),
+    (
+        lambda first, second: np.abs((first * second).sum(axis=1)) / size(first) ** 3,
+        "You use the scalar product of r′ and r″: it is largest where the curve is straight and gets faster.",
+    ),
+    (lambda first, second: 1 / bent(first, second), "That is the radius. The curvature is one over it."),
+]
+
+
+def exercise_2(control_points: Callable[..., Any]) -> str:
+    """11.2: the control points of a B-spline with phantom ends that passes through waypoints."""
+    rng = np.random.default_rng(1120)
+    questions = [(rng.uniform(-20, 20, (count, axes)),) for count, axes in ((6, 3), (4, 3), (3, 2), (9, 2))]
+    given, hint = answers_to(control_points, questions, [question[0].shape for question in questions], "The answer")
+    if hint:
+        return hint
+    waypoints = [question[0] for question in questions]
+    knots = [cubic_bspline(points, per_segment=1) for points in given]
+    if alike(knots, waypoints):
+        return ""
+    for how, mistaken in CONTROL_MISTAKES:
+        if alike(given, [how(points) for points in waypoints]):
+            return mistaken
+    if all(np.allclose(k[1:-1], w[1:-1]) for k, w in zip(knots, waypoints, strict=True)):
+        return (
+            "In between your curve passes through the waypoints, but it doesn't begin or end where it should. "
+            "Which equation have the first and the last point, with phantom ends?"
+        )
+    off = np.linalg.norm(knots[0] - waypoints[0], axis=1)
+    return (
+        f"At its knots your curve passes the six waypoints of the first question at {off.round(3)} m. Write the "
+        "equations of three waypoints down, each with the points that it contains."
+    )
+
+
+def solved(waypoints: np.ndarray, *, sixth: float = 6.0, first: float = 4.0, neighbours: bool = True) -> np.ndarray:
+    """Control points by equations that may be wrong: `first` of 4 leaves the ends without phantom points."""
+    count = len(waypoints)
+    weights = (4 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)) / sixth
+    weights[[0, -1], [0, -1]] = first / sixth
+    if not neighbours:
+        weights[0, 1] = weights[-1, -2] = 0.0
+    return np.linalg.solve(weights, waypoints)
+
+
+def extrapolated(waypoints: np.ndarray) -> np.ndarray:
+    return 2 * waypoints - cubic_bspline(waypoints, per_segment=1)
+
+
+CONTROL_MISTAKES: list[tuple[Callable[[np.ndarray], np.ndarray], str]] = [
+    (
+        lambda waypoints: waypoints,
+        "Those are the waypoints themselves: the curve passes them by, as in the notebook.",
+    ),
+    (
+        lambda waypoints: cubic_bspline(waypoints, per_segment=1),
+        "You work out where the curve with the waypoints as control points is: a smoothing, and the wrong way round. "
+        "The waypoints are known, the control points are what is asked for.",
+    ),
+    (
+        solved,
+        "Your first and last equation lack a point: a neighbour outside is taken for 0. Where is the curve with "
+        "phantom ends when it begins?",
+    ),
+    (
+        lambda waypoints: solved(waypoints, first=5.0),
+        "You take each end twice, as its own neighbour. With a phantom point 2P₀ − P₁ before the first, what does the "
+        "equation of the first say?",
+    ),
+    (
+        lambda waypoints: solved(waypoints, sixth=1.0, first=1.0, neighbours=False),
+        "Your points in between are too near to the origin: the three weights add up to 6. What are they divided by?",
+    ),
+    (
+        lambda waypoints: solved(waypoints, sixth=1.0),
+        "The weights 1, 4, 1 add up to 6. What are they divided by?",
+    ),
+    (
+        extrapolated,
+        "You push each point out by what the curve misses, once. That moves the neighbours' knots as well: all points "
+        "have to be found together.",
+    ),
+]
+
+
+def exercise_3(speeds: Callable[..., Any]) -> str:
+    """11.3: the fastest speeds along a curve, from rest to rest, with limits on speed and acceleration."""
+    questions = [bends(seed) for seed in range(5)]
+    given, hint = answers_to(speeds, questions, [question[0].shape for question in questions], "The answer")
+    if hint:
+        return hint
+    if alike(given, [driven(*question) for question in questions]):
+        return ""
+    for how, mistaken in SPEED_MISTAKES:
+        if alike(given, [driven(*question, **how) for question in questions]):
+            return mistaken
+    return wrong_somewhere(given, questions)
+
+
+def wrong_somewhere(given: list[np.ndarray], questions: list[tuple[Any, ...]]) -> str:
+    """A hint by what speeds violate, or that they are too slow."""
+    for values, (distance, allowed, acceleration) in zip(given, questions, strict=True):
+        if not np.isfinite(values).all() or (values < -1e-9).any():
+            return "Some of your speeds are negative or not numbers. Is a square root taken of something below 0?"
+        if np.abs(values[[0, -1]]).max() > 1e-6:
+            return "The UAV begins and ends at rest."
+        over = np.flatnonzero(values > allowed + 1e-6)
+        if len(over):
+            return (
+                f"At {distance[over[0]]:.1f} m your speed is {values[over[0]]:.2f} m/s, {allowed[over[0]]:.2f} allowed."
+            )
+        rate = np.diff(values**2) / (2 * np.diff(distance))
+        hard = np.flatnonzero(np.abs(rate) > acceleration * (1 + 1e-6))
+        if len(hard):
+            verb = "accelerates" if rate[hard[0]] > 0 else "brakes"
+            return (
+                f"After {distance[hard[0]]:.1f} m your UAV {verb} with {abs(rate[hard[0]]):.2f} m/s², "
+                f"{acceleration:.2f} are allowed."
+            )
+    values, (distance, *_) = given[0], questions[0]
+    slow = int(np.argmax(driven(*questions[0]) - values))
+    return (
+        f"That can be flown, but not as fast as possible: at {distance[slow]:.1f} m more than {values[slow]:.2f} m/s."
+    )
+
+
+def bends(seed: int) -> tuple[np.ndarray, np.ndarray, float]:
+    """A curve with three bends and a limit of 16 m/s, points at uneven distances."""
+    rng = np.random.default_rng(1130 + seed)
+    distance = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 1.0, 150))])
+    allowed = np.full(len(distance), 16.0)
+    for place, slowest in zip((20.0, 45.0, 70.0), rng.uniform(2.0, 6.0, 3), strict=True):
+        allowed = np.minimum(allowed, slowest * np.exp(np.square((distance - place) / 3.0)))
+    return distance, allowed, float(rng.uniform(2.0, 4.0))
+
+
+def driven(
+    distance: np.ndarray,
+    allowed: np.ndarray,
+    acceleration: float,
+    *,
+    rest: bool = True,
+    forward: bool = True,
+    backward: bool = True,
+    twice: float = 2.0,
+    linear: bool = False,
+) -> np.ndarray:
+    """Speeds by rules that may be wrong."""
+    power = 1 if linear else 2
+    speed = allowed.astype(float) ** power
+    if rest:
+        speed[[0, -1]] = 0.0
+    gain = twice * acceleration * np.diff(distance)
+    for i in range(1, len(speed) if forward else 0):
+        speed[i] = min(speed[i], speed[i - 1] + gain[i - 1])
+    for i in range(len(speed) - 2 if backward else -1, -1, -1):
+        speed[i] = min(speed[i], speed[i + 1] + gain[i])
+    return np.asarray(speed ** (1 / power))
+
+
+SPEED_MISTAKES: list[tuple[dict[str, Any], str]] = [
+    (
+        {"backward": False},
+        "Your UAV accelerates well and never brakes: before a bend its speed falls at once. Braking, seen backwards, "
+        "is what?",
+    ),
+    ({"forward": False}, "Your UAV brakes in time, but after a bend it has its full speed at once."),
+    ({"forward": False, "backward": False}, "That is the speed allowed at each point: it jumps, where the UAV can't."),
+    ({"rest": False}, "The UAV begins and ends at rest."),
+    ({"twice": 1.0}, "Your UAV accelerates with half of what it may. Look at v₂² − v₁² once more."),
+    (
+        {"linear": True, "twice": 1.0},
+        "You add a·s to the speed. That is metres per second times metres per second: what grows by 2as?",
+    ),
+    (
+        {"linear": True},
+        "You add 2as to the speed itself. What is it that grows by 2as?",
+    ),
+]
