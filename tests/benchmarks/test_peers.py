@@ -3,11 +3,17 @@
 import math
 
 import astar as benchmark
+import flight as flying
 import numpy as np
 import pytest
 
 from uavlab.city import City, table1_city
+from uavlab.flight import Autopilot, Wind, fly
+from uavlab.flight.disturbance import gust_deviations
 from uavlab.planners import penalty_zone
+from uavlab.resilience import Controller
+from uavlab.route import Route
+from uavlab.vehicle import LIGHT_QUADROTOR
 
 
 @pytest.fixture(scope="module")
@@ -119,3 +125,86 @@ def test_the_large_map_is_searched_from_a_file(tmp_path):
     found = benchmark.search_large(str(tmp_path / "occupied.npy"), np.full(3, 0.6), np.full(3, 4.6))
     assert found["expanded"] == 16
     assert 0 < found["before"] <= found["after"]
+
+
+@pytest.fixture(scope="module")
+def corner():
+    return Route(np.array([[0.0, 0.0, 20.0], [15.0, 0.0, 20.0], [25.0, 10.0, 24.0]]))
+
+
+@pytest.fixture(scope="module")
+def sky(corner):
+    return flying.sky_of("6 m/s, OU", len(flying.reference_of(corner, LIGHT_QUADROTOR).position), seed=1)
+
+
+def test_the_point_mass_flies_through_recorded_air_as_fly_does(corner, sky):
+    def now(time):
+        step = min(round(time / flying.TIME_STEP), len(sky.air) - 1)
+        return Wind(tuple(sky.air[step]), "none") if step else Wind(gusts="none")  # planned in calm air
+
+    calm_first = sky._replace(air=np.vstack([np.zeros(3), sky.air[1:]]))
+    track = flying.point_mass(corner, LIGHT_QUADROTOR, 1.6, calm_first, trimmed=False)
+    autopilot = Autopilot(Controller("", 1.0, 1.6), trimmed=False, gps=flying.STATE_GPS, interval=flying.TIME_STEP)
+    flight = fly(corner, flying.empty_sky(), LIGHT_QUADROTOR, now, autopilot, rng=0)
+    assert track == pytest.approx(flight.position, abs=1e-9)
+    reference = flying.reference_of(corner, LIGHT_QUADROTOR)
+    assert reference.position == pytest.approx(flight.reference, abs=1e-9)
+    assert flying.across(reference, track) == pytest.approx(np.hypot(*flight.offset[:, 1:].T).mean(), rel=0.2)
+
+
+def test_a_known_mean_wind_leaves_the_gusts(corner, sky):
+    still = sky._replace(air=np.tile(sky.mean, (len(sky.air), 1)))
+    reference = flying.reference_of(corner, LIGHT_QUADROTOR)
+    blown, held, gusty = (
+        flying.across(reference, flying.point_mass(corner, LIGHT_QUADROTOR, 1.6, air, trimmed))
+        for air, trimmed in ((still, False), (still, True), (sky, True))
+    )
+    assert held < 0.1 * blown
+    assert held < 0.5 * gusty
+
+
+def test_wind_has_the_mean_and_the_gusts_that_it_is_called_by():
+    for kind, (speed, _) in flying.KINDS.items():
+        sky = flying.sky_of(kind, 200_000, seed=3)
+        assert np.linalg.norm(sky.mean) == pytest.approx(speed)
+        gusts = sky.air - sky.mean
+        # σ from T = 4 000 s of gusts with the correlation time τ is some √(τ/2T) off: 1 % for OU's 1 s, 5 % for the
+        # 20 s of Dryden's longest; four times that is allowed
+        if kind.endswith("Dryden"):
+            along = gusts @ np.array([*sky.mean[:2], 0.0]) / speed
+            level, _, up = gust_deviations(Wind((speed, 0.0), "dryden"), 30.0)
+            assert [along.std(), gusts[:, 2].std()] == pytest.approx([level, up], rel=0.2)
+        if kind.endswith("OU"):
+            assert gusts.std(axis=0) == pytest.approx(speed / 3 * np.array([1.0, 1.0, 0.5]), rel=0.05)
+            lagged = (gusts[50:] * gusts[:-50]).mean(axis=0) / gusts.var(axis=0)
+            assert lagged == pytest.approx(np.full(3, np.exp(-1.0)), abs=0.1)
+
+
+def test_the_error_is_the_distance_across_the_direction_of_flight(corner):
+    reference = flying.reference_of(corner, LIGHT_QUADROTOR)
+    direction = reference.velocity / np.linalg.norm(reference.velocity, axis=1, keepdims=True)
+    assert flying.across(reference, reference.position + 0.7 * direction) == pytest.approx(0.0, abs=1e-9)
+    side = np.cross(direction, [0.0, 0.0, 1.0])
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    assert flying.across(reference, reference.position + 0.7 * side) == pytest.approx(0.7)
+    aside = reference.position + np.array([0.3, -0.2, 0.1])
+    assert flying.across(reference, aside) > 0.1
+    assert flying.across(reference, aside, centred=True) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_peer_is_told_the_same_reference_and_the_same_air(corner, sky):
+    reference = flying.reference_of(corner, LIGHT_QUADROTOR)
+    push = np.tile([0.0, 0.0, 0.5], (len(reference.position), 1))
+    trajectory = flying.Trajectory(reference, push, along=False)
+    assert trajectory.update(0.0)["x"] == pytest.approx(corner.points[0])
+    for step in (1, 7, 200):
+        told = trajectory.update(step * flying.TIME_STEP)
+        assert told["x"] == pytest.approx(reference.position[step])
+        assert told["x_dot"] == pytest.approx(reference.velocity[step])
+        assert told["x_ddot"] == pytest.approx(reference.acceleration[step] + push[0])
+        half = trajectory.update((step + 0.5) * flying.TIME_STEP)
+        assert half["x"] == pytest.approx(reference.position[step : step + 2].mean(axis=0))
+    assert trajectory.update(1e9)["x"] == pytest.approx(reference.position[-1])
+    wind = flying.Recorded(sky.air)
+    met = [wind.update((step + 1) / flying.RATE, corner.points[0]) for step in range(2 * len(sky.air))]
+    assert np.array(met) == pytest.approx(np.repeat(sky.air, 2, axis=0))
