@@ -18,8 +18,61 @@ def test_writes_one_page_and_says_where(tmp_path, capsys):
     assert "A* + shortcut through Table 1" in page
     assert "srcdoc=" in page
     assert "data:image/svg+xml;base64," in page
+    assert "<th>distance to keep</th><td>3.5 m</td>" in page
     assert "<th>least clearance</th><td>3.50 m</td>" in page
-    assert len(page) < 600_000
+    assert len(page) < 700_000
+
+
+def test_goes_the_whole_way_from_weather_to_flights(tmp_path, capsys):
+    out = tmp_path / "route.html"
+    assert main(["--flights", "40", "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "smoothed: " in said
+    assert "at 5 m/s all limits kept" in said
+    assert "flown 40 times in gusts, crashed 0 times" in said
+    page = out.read_text(encoding="utf-8")
+    rows = dict(re.findall(r"<th>([^<]+)</th><td>([^<]+)</td>", page))
+    assert rows["weather"] == "wind of 6.0 m/s, gusts up to 10.5 m/s"
+    assert rows["offsets to be survived"] == "3.0 m (σ = 1.00 m)"
+    assert rows["crashes in these gusts"] == "0 [0, 88.1] per 1 000 (40 flights)"  # 1 − 0.025^(1/40)
+    assert float(rows["fastest without slowing down"].split()[0]) >= 5
+    assert page.count("<td>yes</td>") == 6  # the limits of the curve
+
+
+def test_the_same_seed_flies_the_same_flights(tmp_path):
+    pages = []
+    for seed in ("1", "1", "2"):
+        out = tmp_path / "route.html"
+        assert main(["--flights", "5", "--seed", seed, "--out", str(out)]) == 0
+        pages.append(out.read_text(encoding="utf-8"))
+    assert pages[0] == pages[1] != pages[2]
+
+
+def test_more_load_and_wind_keep_a_larger_distance(tmp_path):
+    out = tmp_path / "route.html"
+    kept = []
+    for conditions in ("--wind=1", "--wind=6", "--wind=9", "--wind=6 --payload=1"):
+        assert main([*conditions.split(), "--flights", "0", "--start", "90,20,40", "--out", str(out)]) == 0
+        kept.append(float(re.search(r"distance to keep</th><td>([\d.]+) m", out.read_text(encoding="utf-8"))[1]))
+    assert kept == [2.5, 3.5, 5.5, 4.5]  # the last three as in REPARE Table 4
+
+
+def test_in_too_much_wind_it_stays_on_the_ground(tmp_path, capsys):
+    out = tmp_path / "route.html"
+    assert main(["--wind", "20", "--out", str(out)]) == 1
+    said = capsys.readouterr().out
+    assert re.match(r"grounded: gusts push with [\d.]+ N, the thrust left over holds [\d.]+ N: [\d.]+ N short\n", said)
+    assert not out.exists()
+
+
+def test_a_route_that_scrapes_a_wall_is_drawn_but_not_flown(tmp_path, capsys):
+    voxels, out = tmp_path / "wall.3dmap", tmp_path / "route.html"
+    lines = [f"5 {y} {z}" for y in range(9) for z in range(10)]
+    voxels.write_text("voxel 10 10 10\n" + "\n".join(lines) + "\n")
+    arguments = ["--city", str(voxels), "--cell", "0.5", "--clearance", "0", "--out", str(out)]
+    assert main(arguments) == 1
+    assert "not flown: route comes within" in capsys.readouterr().out
+    assert "a body of 1 m needs 0.5 m" in out.read_text(encoding="utf-8")
 
 
 def test_planner_start_and_goal_are_taken(tmp_path, capsys):
@@ -86,6 +139,9 @@ def test_no_way_is_an_answer_with_its_own_exit_code(tmp_path, capsys):
         (["--start", "65,20,30"], "start (65.0, 20.0, 30.0) lies in building '1 notch'"),
         (["--cell", "-1"], "cell must be the edge of a voxel in metres, above 0, got -1.0"),
         (["--clearance", "60"], "min_clearance asks for 60 m"),
+        (["--wind", "-1"], "forecast_wind must be finite and at least 0, got -1"),
+        (["--payload", "9"], "thrust 28 N can't lift 1.5 kg + payload 9 kg"),
+        (["--flights", "-1"], "--flights must be at least 0, got -1"),
     ],
 )
 def test_wrong_question_is_one_line_and_exit_code_2(arguments, message, capsys, tmp_path, monkeypatch):
@@ -105,5 +161,6 @@ def test_position_that_is_none(capsys):
 
 def test_help_names_every_option():
     text = subprocess.run([sys.executable, "-m", "uavlab", "--help"], capture_output=True, text=True, check=True).stdout
-    for option in ("--city", "--planner", "--start", "--goal", "--out", "--clearance", "--cell"):
+    named = "--city --cell --planner --detour --start --goal --wind --wind-from --rain --payload --clearance --flights"
+    for option in [*named.split(), "--seed", "--out"]:
         assert option in text

@@ -20,6 +20,7 @@ from uavlab.offsets import (
     offset_paths,
     pauta_filter,
     pauta_radius,
+    safety_domain,
 )
 
 SEEDS = range(8)
@@ -534,6 +535,52 @@ def test_chance_takes_arrays():
 NAN = float("nan")
 
 
+@pytest.mark.parametrize("share", [0.5, 0.9, PAUTA_COVERAGE])
+def test_a_safety_domain_holds_its_share_of_the_offsets_it_was_made_of(share):
+    """Over seeds; its outline and its radius hold that share of the fitted law exactly."""
+    domains = [safety_domain(TILTED.sample(20_000, seed), share) for seed in SEEDS]
+    for field in ("in_ellipse", "in_circle"):
+        low, high = interval([getattr(domain, field) for domain in domains])
+        assert low < share < high
+        assert high - low < 0.02
+    for domain in domains[:3]:
+        assert domain.coverage == pytest.approx(share)
+        assert domain.model.radius_in_sigma(domain.ellipse) == pytest.approx(np.full(181, pauta_radius(2, share)))
+        assert domain.ellipse[0] == pytest.approx(domain.ellipse[-1])
+        assert domain.model.within_circle(domain.radius) == pytest.approx(share)
+
+
+def test_shares_of_a_safety_domain_are_counts_of_its_samples():
+    samples = TILTED.sample(500, 3)
+    domain = safety_domain(samples, 0.8)
+    assert domain.model == JointOffset.fit(samples)
+    along, across = np.linalg.eigh(domain.model.covariance)
+    inside = (((samples - domain.model.mean) @ across) ** 2 / along).sum(axis=1) <= stats.chi2.ppf(0.8, 2)
+    assert domain.in_ellipse == inside.mean()
+    assert domain.in_circle == (np.linalg.norm(samples, axis=1) <= domain.radius).mean()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_as_printed_a_safety_domain_is_an_eighth_too_small(seed):
+    samples = JointOffset((0.0, 0.0), (1.3, 1.3)).sample(100_000, seed)
+    printed, meant = safety_domain(samples, as_printed=True), safety_domain(samples)
+    assert printed.coverage == pytest.approx(1 - np.exp(-4.5))
+    assert printed.in_ellipse == pytest.approx(0.98889, abs=4 * np.sqrt(0.011 / 100_000))
+    assert meant.in_ellipse == pytest.approx(PAUTA_COVERAGE, abs=4 * np.sqrt(0.0027 / 100_000))
+    assert printed.radius == pytest.approx(3 * max(printed.model.sigma))
+    assert printed.radius / meant.radius == pytest.approx(0.8723, abs=0.01)
+    assert printed.ellipse - printed.model.mean == pytest.approx((meant.ellipse - meant.model.mean) * 0.8723, abs=1e-3)
+    assert printed.in_circle < meant.in_circle
+
+
+def test_a_mean_offset_moves_the_ellipse_and_widens_the_circle():
+    samples = JointOffset((0.0, 0.0), (1.0, 0.5)).sample(5000, 1)
+    still, pushed = safety_domain(samples), safety_domain(np.add(samples, (2.0, 0.0)))
+    assert pushed.ellipse == pytest.approx(np.add(still.ellipse, (2.0, 0.0)))
+    assert pushed.in_ellipse == pytest.approx(still.in_ellipse)
+    assert still.radius + 1 < pushed.radius < still.radius + 2  # it is around the route
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
@@ -599,6 +646,12 @@ NAN = float("nan")
         (lambda: JointOffset.fit([[0, 1], [NAN, 0], [2, 2]]), r"1 of 3 are not, at 1;"),
         (lambda: JointOffset.fit([[0, 1], [1, 1], [2, 1]]), r"samples must differ"),
         (lambda: TILTED.circle(1.5), r"coverage must be between 0 and 1"),
+        (lambda: safety_domain([[0, 1], [1, 0]]), r"samples must be at least 3, got 2"),
+        (lambda: safety_domain([[0, 1], [NAN, 0], [2, 2]]), r"1 of 3 are not, at 1;"),
+        (lambda: safety_domain([[0, 0], [1, 2], [2, 4]]), r"samples lie on a line"),
+        (lambda: safety_domain([0, 1, 2]), r"samples must have shape \(N, 2\), got \(3,\)"),
+        (lambda: safety_domain([[0, 0], [1, 2], [2, 0]], 1.0), r"coverage must be between 0 and 1"),
+        (lambda: safety_domain([[0, 0], [1, 2], [2, 0]], 99.73, as_printed=True), r"coverage must be between 0 and 1"),
         (lambda: TILTED.ellipse(0), r"coverage must be between 0 and 1"),
         (lambda: TILTED.within_circle(-1), r"radius must be finite and at least 0"),
         (lambda: magnitude(0), r"sigma must be finite and above 0"),

@@ -11,6 +11,8 @@ from uavlab.city import City
 from uavlab.planners import Comparison, astar, least_risk, pareto_front, potential_field, potential_forces
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
 from uavlab.route import Route
+from uavlab.spline import Curve
+from uavlab.vehicle import GRAVITY
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +82,83 @@ def test_profile_draws_height_and_clearance(table1, route):
     assert below.lines[0].get_ydata().min() == pytest.approx(route.clearance(table1))
     assert below.lines[1].get_ydata() == pytest.approx([3.5, 3.5])
     assert below.get_xlabel() == "distance flown [m]"
+
+
+def bent_curve():
+    """Two level legs and one that climbs."""
+    return Curve(np.array([[10.0, 10, 30], [40, 10, 30], [40, 40, 30], [40, 60, 45]]), planner="bent")
+
+
+def test_curve_profile_draws_curvature_and_pitch_with_the_papers_limits_and_ours():
+    curve = bent_curve()
+    other = Curve(curve.control[:3], planner="other")
+    figure = plot.curve_profile(curve, other, speed=8.0, cell=5.0, bank=np.radians(20.0))
+    above, below = figure.axes
+    assert (above.get_ylabel(), below.get_ylabel()) == ("curvature κ [1/m]", "pitch [°]")
+    assert below.get_xlabel() == "distance flown [m]"
+    assert np.array_equal(above.lines[0].get_xydata(), np.column_stack([curve.distance, curve.curvature]))
+    assert np.array_equal(above.lines[1].get_ydata(), curve.level_curvature)
+    assert np.array_equal(below.lines[0].get_ydata(), np.degrees(curve.pitch))
+    limits = [line.get_ydata()[0] for axes in (above, below) for line in axes.lines if line.get_linestyle() == "--"]
+    assert limits == pytest.approx([0.2, GRAVITY * np.tan(np.radians(20)) / 64, 60, -60])
+    assert "20° of bank\nat 8 m/s" in [text.get_text() for text in above.texts]
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names == ["bent", "other", "level part of it"]
+    assert above.lines[0].get_color() != above.lines[2].get_color()
+
+
+def test_curve_profile_of_a_corner_shows_what_is_finite():
+    corner = np.repeat([[10.0, 10, 30], [40, 10, 30], [40, 40, 30]], [1, 3, 1], axis=0)
+    above = plot.curve_profile(Curve(corner), speed=8.0, cell=5.0).axes[0]
+    assert np.isnan(above.lines[0].get_ydata()).sum() == 1
+    assert np.isfinite(above.get_ylim()).all()
+
+
+def test_corner_shows_where_the_body_touches_and_its_width(table1):
+    through = Curve(np.array([[50.0, 12, 30], [58, 10, 30], [66, 18, 30], [72, 10, 30]]), planner="through")
+    around = Curve(np.array([[50.0, 12, 30], [58, 10, 30], [72, 10, 30]]), planner="around")
+    route = Route(through.control, "given")
+    figure = plot.corner(table1, through, around, center=(64, 15, 30), reach=8.0, diameter=2.0, route=route)
+    left, right = figure.axes
+    for axes in (left, right):
+        assert axes.get_aspect() == 1.0
+        assert (*axes.get_xlim(), *axes.get_ylim()) == (56, 72, 7, 23)
+        assert axes.get_xlabel() == "x, east [m]"
+    drawn, line, touch, control = left.lines
+    assert np.array_equal(drawn.get_xydata(), route.points[:, :2])
+    assert np.array_equal(line.get_xydata(), through.points[:, :2])
+    assert np.array_equal(control.get_xydata(), through.control[:, :2])
+    x, y = touch.get_xydata()[np.isfinite(touch.get_xydata()[:, 0])].T
+    assert len(x) > 10
+    assert (y > 14 - 0.1).all()  # building 1 begins at y = 15, and half of the body is 1 m
+    assert not np.isfinite(right.lines[2].get_xydata()).any()
+    band = left.collections[0].get_paths()[40].vertices
+    assert np.linalg.norm(band[0] - band[3]) == pytest.approx(2.0, abs=1e-9)
+    assert "touches an obstacle" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert left.get_title().startswith("through: 0.00 m clear")
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (lambda city, curve: plot.curve_profile(speed=8, cell=5), "curves is empty"),
+        (lambda city, curve: plot.curve_profile([curve], speed=8, cell=5), "curves must be a Curve, got list"),
+        (lambda city, curve: plot.curve_profile(curve, speed=0, cell=5), "speed must be finite and above 0"),
+        (lambda city, curve: plot.curve_profile(curve, speed=8, cell=-5), "cell must be finite and above 0"),
+        (
+            lambda city, curve: plot.corner(city, curve.route(), center=(0, 0, 0), reach=5, diameter=1),
+            "curves must be a Curve, got Route",
+        ),
+        (lambda city, curve: plot.corner(city, curve, center=(5, 5, 120), reach=5, diameter=1), "height must lie on"),
+        (lambda city, curve: plot.corner(city, curve, center=5, reach=5, diameter=1), "center must be"),
+        (lambda city, curve: plot.corner(city, curve, center=(5, 5, 5), reach=0, diameter=1), "reach must be"),
+        (lambda city, curve: plot.corner(city, curve, center=(5, 5, 5), reach=5, diameter=0), "diameter must be"),
+        (lambda city, curve: plot.corner(curve, center=(5, 5, 5), reach=5, diameter=1), "city must be a City"),
+    ],
+)
+def test_curves_are_not_drawn_from_something_else(draw, message, table1):
+    with pytest.raises(ValueError, match=message):
+        draw(table1, bent_curve())
 
 
 def test_expansions_needs_a_recorded_order(table1, route):

@@ -5,7 +5,7 @@ Colours are those of Okabe and Ito, or of a map that is even in lightness, so th
 apart.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import cycle
 from typing import Any
 
@@ -15,21 +15,34 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm, Normalize, to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.flight import Flight, Rate
+from uavlab.offsets import SafetyDomain
 from uavlab.planners.comparison import Comparison
 from uavlab.planners.potential_field import potential_forces
 from uavlab.risk import RiskMap
 from uavlab.route import Route
+from uavlab.spline import Curve
+from uavlab.spline.limits import BANK, MAX_PITCH
+from uavlab.vehicle import GRAVITY
 
 ROUTE_COLORS = ("#D55E00", "#0072B2", "#000000", "#CC79A7", "#009E73", "#E69F00")
 CONVERGENCE_STYLES = tuple(zip(ROUTE_COLORS, ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2))), strict=True))
 """Colour and line style of one planner among several: told apart in grey, too."""
+
+CRASH_COLOR = "#D00000"
+"""Of an X; nothing else has that shape, for readers to whom red is brown."""
+
+TRACK_STEP = 0.2
+"""From point to point of a flight's track [s]."""
 
 SEQUENTIAL = matplotlib.colormaps["cividis"]
 DPI = 100
@@ -353,6 +366,124 @@ def profile(city: City, *routes: Route, safe_distance: float | None = None) -> F
     return finished(figure)
 
 
+def curve_profile(
+    *curves: Curve, speed: float, cell: float, bank: float = BANK, max_pitch: float = MAX_PITCH
+) -> Figure:
+    """Curvature and pitch along curves, with the papers' limits and ours (RISK-ACO Figs 9-10, PSO-BAS Figs 7-8).
+
+    Parameters
+    ----------
+    curves : Curve
+    speed : float
+        v [m/s], above 0: a bank holds a level turn up to the curvature g·tan(bank)/v².
+    cell : float
+        Edge of a voxel [m], above 0: the papers ask for a curvature below 1 per voxel.
+    bank, max_pitch : float
+        [rad]
+
+    Raises
+    ------
+    ValueError
+        If there is no curve, or a number is not above 0.
+    """
+    check_curves(curves)
+    for name, value in (("speed", speed), ("cell", cell), ("bank", bank), ("max_pitch", max_pitch)):
+        checks.positive_number(name, value)
+    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8.4, 5.4), dpi=DPI, layout="constrained")
+    for curve, color in zip(curves, route_colors(len(curves)), strict=True):
+        above.plot(curve.distance, finite_or_nan(curve.curvature), color=color, label=curve.planner)
+        above.plot(curve.distance, finite_or_nan(curve.level_curvature), ":", color=color, linewidth=1.2)
+        below.plot(curve.distance, np.degrees(curve.pitch), color=color)
+    above.plot([], ":", color="0.3", linewidth=1.2, label="level part of it")
+    limits = (
+        (above, 1 / cell, f"papers: 1 per\nvoxel of {cell:g} m"),
+        (above, GRAVITY * np.tan(bank) / speed**2, f"{np.degrees(bank):.0f}° of bank\nat {speed:g} m/s"),
+        (below, np.degrees(max_pitch), f"±{np.degrees(max_pitch):.0f}°"),
+        (below, -np.degrees(max_pitch), ""),
+    )
+    for axes, limit, text in limits:
+        axes.axhline(limit, color="0.3", linestyle="--", linewidth=1)
+        axes.annotate(text, (1.01, limit), xycoords=("axes fraction", "data"), va="center", fontsize=8, color="0.3")
+    above.set(ylabel="curvature κ [1/m]", ylim=(0, 1.15 * max(above.get_ylim()[1], 1 / cell)))
+    below.set(xlabel="distance flown [m]", ylabel="pitch [°]")
+    below.set_ylim(*(1.25 * max(np.degrees(max_pitch), *np.abs(below.get_ylim())) * np.array([-1, 1])))
+    figure.legend(fontsize=8, loc="outside upper center", ncols=4)
+    for axes in (above, below):
+        axes.grid(alpha=0.3)
+        axes.margins(x=0.01)
+    return finished(figure)
+
+
+def corner(
+    city: City, *curves: Curve, center: npt.ArrayLike, reach: float, diameter: float, route: Route | None = None
+) -> Figure:
+    """Curves about a point from above, as wide as the body, and with their control points; voxels at its height black.
+
+    Where the body touches an obstacle the curve is drawn in thick orange.
+
+    Parameters
+    ----------
+    city : City
+    curves : Curve
+        A panel for each.
+    center : (3,) array
+        Where to look [m].
+    reach : float
+        How far to see to each side [m], above 0.
+    diameter : float
+        Of the body [m], above 0.
+    route : Route, optional
+        What was smoothed; drawn dashed.
+
+    Raises
+    ------
+    ValueError
+        If there is no curve, the point's height isn't on the map, or a number is not above 0.
+    """
+    check_drawn(city, () if route is None else (route,))
+    check_curves(curves)
+    x, y, z = checks.three("center", center)
+    for name, value in (("reach", reach), ("diameter", diameter)):
+        checks.positive_number(name, value)
+    layer = np.where(city.occupied[:, :, level_of(city, z)], 1.0, np.nan)
+    figure, panels = plt.subplots(1, len(curves), figsize=(0.8 + 3.7 * len(curves), 4.4), dpi=DPI, squeeze=False,
+                                  sharey=True, layout="constrained")  # fmt: skip
+    for axes, curve in zip(panels[0], curves, strict=True):
+        draw_map(axes, city, layer, "Greys", vmin=0.0, vmax=1.6)
+        if route is not None:
+            axes.plot(*route.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2, label=label_of(route))
+        axes.add_collection(PolyCollection(list(swept(curve, diameter)), facecolor=ROUTE_COLORS[1], alpha=0.35))
+        axes.plot(*curve.points[:, :2].T, color=ROUTE_COLORS[1], label=f"curve and its body of {diameter:g} m")
+        touches = np.append(curve.least_distances(city, diameter) < diameter / 2, False)
+        axes.plot(*np.where(touches[:, None], curve.points, np.nan)[:, :2].T, color=ROUTE_COLORS[0], linewidth=4,
+                  label="touches an obstacle")  # fmt: skip
+        axes.plot(*curve.control[:, :2].T, "o", color=ROUTE_COLORS[2], markersize=4, label="control points")
+        axes.set(xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
+        clear, sharpest = curve.clearance(city), curve.curvature.max()
+        axes.set_title(f"{curve.planner}: {clear:.2f} m clear, κ ≤ {sharpest:.2f} 1/m", fontsize=9)
+    for axes in panels[0, 1:]:
+        axes.set_ylabel("")
+    handles, names = panels[0, 0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside lower center", ncols=len(names), fontsize=8)
+    return finished(figure)
+
+
+def swept(curve: Curve, width: float) -> np.ndarray:
+    """Corners of a quadrilateral between each two points of a curve, (P − 1, 4, 2) [m]: a band on the ground plan."""
+    east, north = curve.tangent[:, :2].T
+    side = np.column_stack([-north, east]) / np.maximum(np.hypot(east, north), 1e-9)[:, None] * width / 2
+    left, right = curve.points[:, :2] + side, curve.points[:, :2] - side
+    return np.stack([left[:-1], left[1:], right[1:], right[:-1]], axis=1)
+
+
+def check_curves(curves: Sequence[Curve]) -> None:
+    """Refuse what isn't a curve, or none at all."""
+    if not curves:
+        raise ValueError("curves is empty: give at least one, as from smooth(route, city, uav)")
+    for curve in curves:
+        checks.instance("curves", curve, Curve)
+
+
 def expansions(city: City, *routes: Route) -> Figure:
     """Which columns of the map each search expanded, and when: dark first, bright last.
 
@@ -401,10 +532,196 @@ def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
     return finished(figure)
 
 
+def tracks(
+    city: City,
+    flights: Mapping[str, Sequence[Flight]],
+    routes: Mapping[str, Route] | None = None,
+    *,
+    area: tuple[float, float, float, float] | None = None,
+) -> Figure:
+    """Flights from above, a panel for each name: their tracks, and a red X where one crashed.
+
+    Parameters
+    ----------
+    city : City
+    flights : mapping of sequences of Flight
+        By name, as that of a planner; an empty one leaves the panel to its route.
+    routes : mapping of Route, optional
+        What was to be flown, for some of the names or for others; drawn dashed, with a square where one that doesn't
+        arrive ends.
+    area : (west, east, south, north), optional
+        Part of the map to show [m]; by default all of it.
+
+    Raises
+    ------
+    ValueError
+        If there is no name, or what stands behind it isn't flights.
+    """
+    planned = dict(routes or {})
+    check_drawn(city, tuple(planned.values()))
+    named = {name: list(named_flights(flights.get(name, ())).values()) for name in (planned | dict(flights))}
+    if not named:
+        raise ValueError("flights is empty: give at least one name, as in {'A*': [flight]}")
+    (west, south, _), (east, north, _) = city.bounds
+    west, east, south, north = (west, east, south, north) if area is None else area
+    height = 3.1 * (north - south) / (east - west) + 1.2
+    figure, panels = plt.subplots(1, len(named), figsize=(3.1 * len(named) + 0.5, height), dpi=DPI, squeeze=False,
+                                  sharey=True, layout="constrained")  # fmt: skip
+    built = np.where(city.occupied.any(axis=2), 1.0, np.nan)
+    for axes, (name, flown) in zip(panels[0], named.items(), strict=True):
+        draw_map(axes, city, built, "Greys", vmin=0.0, vmax=3.0)
+        for flight in flown:
+            axes.plot(*track(flight)[1][:, :2].T, color=ROUTE_COLORS[1], linewidth=0.8, alpha=0.6)
+        ends = np.array([flight.position[-1, :2] for flight in flown if flight.outcome == "crashed"]).reshape(-1, 2)
+        title = f"{name}: {len(ends)} of {len(flown)} crash" if flown else name
+        if name in planned:
+            way = planned[name]
+            axes.plot(*way.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2)
+            axes.plot(*way.points[:1, :2].T, "o", color=ROUTE_COLORS[2], markersize=7)
+            mark = "^" if way.reached else "s"
+            axes.plot(*way.points[-1:, :2].T, mark, color=ROUTE_COLORS[2], markersize=7)
+            title = title if way.reached else f"{name}: doesn't arrive"
+        axes.plot(*ends.T, "x", color=CRASH_COLOR, markersize=8, markeredgewidth=2, zorder=5)
+        axes.set(xlim=(west, east), ylim=(south, north))
+        axes.set_title(title, fontsize=10)
+    for axes in panels[0, 1:]:
+        axes.set_ylabel("")
+    parts = [(ROUTE_COLORS[1], "-", "", "flown"), (ROUTE_COLORS[2], "--", "", "planned"),
+             (CRASH_COLOR, "", "x", "crash"),
+             (ROUTE_COLORS[2], "", "o", "start"), (ROUTE_COLORS[2], "", "^", "goal")]  # fmt: skip
+    if any(not way.reached for way in planned.values()):
+        parts.append((ROUTE_COLORS[2], "", "s", "trapped"))
+    handles = [Line2D([], [], color=c, linestyle=line, marker=m, label=label) for c, line, m, label in parts]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=8)
+    return finished(figure)
+
+
+def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01) -> Figure:
+    """Crashes per 1 000 flights with their intervals, by factors: a group for each case, a colour for each planner.
+
+    Parameters
+    ----------
+    rates : mapping of mappings
+        Case → planner → what `uavlab.flight.crash_rate` returns.
+    least : float
+        Where the axis begins; a rate of 0 is an arrow down from the upper end of its interval.
+
+    Raises
+    ------
+    ValueError
+        If there is no case, or there are more than six planners.
+    """
+    planners = list(dict.fromkeys(name for by_planner in rates.values() for name in by_planner))
+    if not 1 <= len(planners) <= len(ROUTE_COLORS):
+        raise ValueError(f"rates must hold one to {len(ROUTE_COLORS)} planners, got {len(planners)}")
+    checks.positive_number("least", least)
+    figure, axes = new_figure(8.6, 0.62 * len(rates) * max(len(planners) / 4, 0.7) + 1.5)
+    apart = 0.8 / len(planners)
+    for number, (name, color, marker) in enumerate(zip(planners, ROUTE_COLORS, "osD^vP", strict=False)):
+        axes.plot([], [], marker, color=color, label=name)
+        for row, by_planner in enumerate(rates.values()):
+            if name not in by_planner:
+                continue
+            rate, y = by_planner[name], row + (number - (len(planners) - 1) / 2) * apart
+            if rate.per_thousand > 0:
+                axes.plot([max(rate.low, least), rate.high], [y, y], color=color, linewidth=2)
+                axes.plot(rate.per_thousand, y, marker, color=color, markersize=6)
+            else:
+                axes.annotate("", (least, y), (rate.high, y), arrowprops={"arrowstyle": "-|>", "color": color})
+                axes.plot(rate.high, y, "|", color=color, markersize=8, markeredgewidth=2)
+    axes.set(xscale="log", xlim=(least, 1300), ylim=(len(rates) - 0.45, -0.55),
+             xlabel="crashes per 1 000 flights, with 95 % intervals (arrow: none seen)")  # fmt: skip
+    axes.set_yticks(range(len(rates)), list(rates))
+    axes.xaxis.set_major_formatter("{x:,g}")
+    axes.grid(axis="x", alpha=0.3)
+    for border in range(1, len(rates)):
+        axes.axhline(border - 0.5, color="0.85", linewidth=0.8)
+    axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return finished(figure)
+
+
+def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
+    """How flights went, over time: offset across the route, speed over ground and thrust.
+
+    Parameters
+    ----------
+    flights : mapping of Flight
+        By name, at most six; an X where one crashed.
+    limits : float
+        Thrust limits [N] to mark, by name.
+
+    Raises
+    ------
+    ValueError
+        If there is none that flew, or there are more than six.
+    """
+    flown = {name: flight for name, flight in named_flights(flights).items() if len(flight.log)}
+    if not 1 <= len(flown) <= len(CONVERGENCE_STYLES):
+        raise ValueError(f"flights must hold one to {len(CONVERGENCE_STYLES)} that flew, got {len(flown)}")
+    figure, panels = plt.subplots(3, 1, figsize=(8.6, 6.4), dpi=DPI, sharex=True, layout="constrained")
+    quantities = ("across", "offset across the route,\nleft is positive [m]"), ("speed", "speed over ground\n[m/s]")
+    for axes, (column, label) in zip(panels, (*quantities, ("thrust", "thrust [N]")), strict=True):
+        for (name, flight), (color, style) in zip(flown.items(), CONVERGENCE_STYLES, strict=False):
+            values = flight.column(column)
+            axes.plot(flight.time, values, color=color, linestyle=style, linewidth=1.2, label=name)
+            if flight.outcome == "crashed":
+                axes.plot(flight.time[-1], values[-1], "x", color=CRASH_COLOR, markersize=9, markeredgewidth=2.5)
+        axes.set_ylabel(label)
+        axes.grid(alpha=0.3)
+    for name, limit in limits.items():
+        panels[2].axhline(limit, color="0.4", linewidth=1, linestyle=":")
+        panels[2].annotate(name, (0.995, limit), (0, -2), xycoords=("axes fraction", "data"),
+                           textcoords="offset points", ha="right", va="top", fontsize=8, color="0.3")  # fmt: skip
+    panels[0].axhline(0.0, color="0.4", linewidth=1)
+    panels[1].set_ylim(bottom=0.0)
+    panels[2].set(xlabel="time in flight [s]", xlim=(0, max(flight.duration for flight in flown.values())))
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=8)
+    return finished(figure)
+
+
+def safety_domain(samples: npt.ArrayLike, **domains: SafetyDomain) -> Figure:
+    """Offsets as a heat map of their density, with the ellipses of safety domains around them (REPARE Fig. 18).
+
+    Parameters
+    ----------
+    samples : (N, 2) array
+        Offsets across the route and up [m], such as `Flights.samples`.
+    domains : SafetyDomain
+        By name (`_` for a blank), at most three.
+
+    Raises
+    ------
+    ValueError
+        If the samples aren't (N, 2) and finite, or there are more than three domains.
+    """
+    points = checks.samples(samples, least=3, axes=2)
+    if len(domains) > 3:
+        raise ValueError(f"domains must be at most three, got {len(domains)}")
+    outlines = [domain.ellipse for domain in domains.values()]
+    reach = 1.15 * max([np.quantile(np.abs(points), 0.9995), *(np.abs(outline).max() for outline in outlines)])
+    figure, axes = new_figure(6.6, 5.6)
+    edges = np.linspace(-reach, reach, 61)
+    counts = np.histogram2d(*points.T, bins=(edges, edges))[0]
+    density = counts / len(points) / (edges[1] - edges[0]) ** 2
+    image = axes.pcolormesh(edges, edges, np.where(density > 0, density, np.nan).T, cmap=SEQUENTIAL, norm=LogNorm())
+    axes.set_facecolor("0.93")
+    styles = zip((ROUTE_COLORS[0], "#FFFFFF", ROUTE_COLORS[3]), ("-", "--", "-."), strict=True)
+    for (name, domain), (color, style) in zip(domains.items(), styles, strict=False):
+        label = f"{name.replace('_', ' ')}: {domain.in_ellipse:.2%} inside"
+        axes.plot(*domain.ellipse.T, color="black", linewidth=3.6)
+        axes.plot(*domain.ellipse.T, style, color=color, linewidth=2.2, label=label)
+    axes.set(xlabel="offset across the route, left is positive [m]", ylabel="offset up [m]", aspect="equal")
+    add_color_bar(figure, axes, image, "density [1/m²], grey: none seen")
+    if domains:
+        axes.legend(fontsize=8, loc="upper right", facecolor="0.75", framealpha=1.0)
+    return finished(figure)
+
+
 def still(
     city: City,
     *routes: Route,
     risk: RiskMap | None = None,
+    flights: Sequence[Flight] | Mapping[str, Flight] = (),
     elevation_deg: float = 32.0,
     azimuth_deg: float = -60.0,
 ) -> Figure:
@@ -416,6 +733,8 @@ def still(
     routes : Route
     risk : RiskMap, optional
         Paints the ground with the risk just above it.
+    flights : sequence of Flight, or mapping
+        Their tracks, by name if it is a mapping; a crash is a red X. Routes are drawn thinner then.
     elevation_deg, azimuth_deg : float
         From where it is seen [degrees]: height above the horizon, direction counted from east.
     """
@@ -432,13 +751,20 @@ def still(
         light = 0.75 + 0.25 * (normals @ (SUN / np.linalg.norm(SUN)))
         polygons.append(pieces)
         colors.append(light[:, None] * np.array(to_rgb(color)))
-    for route, color in zip(routes, route_colors(len(routes)), strict=True):
-        axes.plot([], [], [], color=color, linewidth=3, label=label_of(route))
-        if len(route.points) > 1:
-            ribbon = ribbons(route.resample(longest / 60).points, longest / 180)
-            axes.plot(*route.points.T, color=color, linewidth=0.8, alpha=0.5, zorder=9)  # what a building hides
+    named = named_flights(flights)
+    ways = [(label_of(route), route, 0.4 if named else 1.0) for route in routes]
+    ways += [(label_of_flight(name, flight), Route(track(flight)[1]), 1.0) for name, flight in named.items()]
+    for (label, way, thickness), color in zip(ways, route_colors(len(ways)), strict=True):
+        axes.plot([], [], [], color=color, linewidth=3 * thickness, label=label)
+        if len(way.points) > 1:
+            ribbon = ribbons(way.resample(longest / 60).points, thickness * longest / 180)
+            axes.plot(*way.points.T, color=color, linewidth=0.8, alpha=0.5, zorder=9)  # what a building hides
             polygons.append(ribbon)
             colors.append(np.tile(to_rgb(color), (len(ribbon), 1)))
+    for flight in named.values():
+        if flight.outcome == "crashed":
+            for arm in cross(flight.position[-1], longest / 30):
+                axes.plot(*arm.T, color=CRASH_COLOR, linewidth=3.5, zorder=10)
     if risk is not None:
         norm = risk_norm(risk)
         paint = np.repeat(SEQUENTIAL(norm(ground_risk(risk).ravel())), 2, axis=0)
@@ -456,9 +782,43 @@ def still(
     axes.set_box_aspect(high - low, zoom=0.95)
     axes.zaxis.set_major_locator(MaxNLocator(2 + round(4 * (high - low)[2] / longest)))
     axes.view_init(elevation_deg, azimuth_deg)
-    if routes:
+    if ways:
         axes.legend(loc="upper left", fontsize=8)
     return finished(figure)
+
+
+def named_flights(flights: Sequence[Flight] | Mapping[str, Flight]) -> dict[str, Flight]:
+    """Flights by name, or by number where they have none."""
+    if not isinstance(flights, Sequence | Mapping):
+        raise ValueError(f"flights must be a list of Flight, or Flight by name, got {type(flights).__name__}")
+    named = flights if isinstance(flights, Mapping) else {f"flight {n + 1}": f for n, f in enumerate(flights)}
+    for flight in named.values():
+        checks.instance("flights", flight, Flight)
+    return dict(named)
+
+
+def track(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
+    """Time (P,) [s] and position (P, 3) [m] every fifth of a second, and where it ended."""
+    last = len(flight.log) - 1
+    step = flight.duration / max(last, 1) or TRACK_STEP
+    rows = list(range(0, last, max(round(TRACK_STEP / step), 1)))
+    if last >= 0:
+        rows.append(last)
+    return flight.time[rows], flight.position[rows]
+
+
+def cross(place: np.ndarray, reach: float) -> np.ndarray:
+    """The two arms of an upright X as seen from the south-east, (2, 2, 3) [m]."""
+    across = np.array([np.cos(np.pi / 6), np.sin(np.pi / 6), 0.0])
+    arms = np.array([[-across, across], [across, -across]])
+    arms[:, 0, 2], arms[:, 1, 2] = -1.0, 1.0
+    return place + reach * arms
+
+
+def label_of_flight(name: str, flight: Flight) -> str:
+    """Who flew, and what became of it."""
+    when = "" if flight.outcome == "grounded" else f" after {flight.duration:.1f} s"
+    return f"{name}: {flight.outcome}{when}"
 
 
 def risk_norm(risk_map: RiskMap) -> LogNorm:

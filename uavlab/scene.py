@@ -10,6 +10,7 @@ import base64
 import gzip
 import html
 import io
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
 from itertools import pairwise
@@ -25,11 +26,14 @@ from meshcat.transformations import translation_matrix
 
 from uavlab import plot
 from uavlab.city import City
+from uavlab.flight import Flight
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 
 FRAMES_PER_SECOND = 30
 FLIGHT_SECONDS = 12.0
+LAST_FRAME = round(1.2 * FLIGHT_SECONDS * FRAMES_PER_SECOND)
+"""Then the animation begins again."""
 EXPANSION_BATCHES = 40
 MOST_POINTS = 12_000
 """Larger expansions are thinned out evenly, so that their page stays small."""
@@ -59,13 +63,20 @@ def show(
     expansion: bool = False,
     risk: RiskMap | None = None,
     slice_height: float | None = None,
+    flights: Sequence[Flight] | Mapping[str, Flight] = (),
     height: int = 480,
 ) -> Scene:
     """The scene for a notebook; arguments as for `page`, and the frame's height in pixels."""
     picture = io.BytesIO()
-    plot.still(city, *routes, risk=risk).savefig(picture, format="png", dpi=72)
+    plot.still(city, *routes, risk=risk, flights=flights).savefig(picture, format="png", dpi=72)
     content = page(
-        city, *routes, safe_distance=safe_distance, expansion=expansion, risk=risk, slice_height=slice_height
+        city,
+        *routes,
+        safe_distance=safe_distance,
+        expansion=expansion,
+        risk=risk,
+        slice_height=slice_height,
+        flights=flights,
     )
     return Scene(content, height, picture.getvalue())
 
@@ -77,9 +88,12 @@ def page(
     expansion: bool = False,
     risk: RiskMap | None = None,
     slice_height: float | None = None,
+    flights: Sequence[Flight] | Mapping[str, Flight] = (),
     title: str | None = None,
 ) -> str:
     """One self-contained HTML page with the city, its routes, and a UAV that flies the first of them.
+
+    With `flights` the UAVs fly those instead, all by the same clock.
 
     Parameters
     ----------
@@ -88,13 +102,16 @@ def page(
     routes : Route
         Drawn as tubes, each in a colour of its own; routes that didn't arrive are named in the legend.
     safe_distance : float, optional
-        Radius of a ball around the UAV [m]: the clearance it should keep.
+        Radius of a ball around each UAV [m]: the clearance it should keep.
     expansion : bool
         Show in which order the first route's planner expanded its nodes (`record=True`), as an animation.
     risk : RiskMap, optional
         Paints the ground with the risk in the lowest voxels where the UAV may fly; the legend has a colour bar.
     slice_height : float, optional
         Draws the risk at this height [m] too, as a plane that one can look through.
+    flights : sequence of Flight, or mapping
+        What `uavlab.flight.fly` returns, by name if it is a mapping. Each track is a tube in a colour of its own; a
+        crash is a red X that appears when and where it happens. Routes are drawn thinner then.
     title : str, optional
         Of the page; by default the city's name.
 
@@ -106,8 +123,8 @@ def page(
     Raises
     ------
     ValueError
-        If `expansion` is asked for without a route that recorded its order, `safe_distance` is not above 0,
-        `slice_height` lies outside of the map, or there is no `risk` to slice.
+        If `expansion` is asked for without a route that recorded its order or together with flights, `safe_distance`
+        is not above 0, `slice_height` lies outside of the map, or there is no `risk` to slice.
     """
     plot.check_drawn(city, routes, risk)
     if slice_height is not None and risk is None:
@@ -116,6 +133,9 @@ def page(
         raise ValueError(f"safe_distance must be the radius of a ball in metres, above 0, got {safe_distance!r}")
     if expansion and not (routes and "order" in routes[0].info):
         raise ValueError("expansion needs a first route planned with record=True")
+    named = plot.named_flights(flights)
+    if expansion and named:
+        raise ValueError("expansion and flights are two animations: show them in two scenes")
     window = CommandRecorder()
     scene = meshcat.Visualizer(window=window)
     set_stage(scene, city)
@@ -123,27 +143,45 @@ def page(
     if risk is not None:
         draw_risk(scene["risk"], risk, slice_height)
     animation = Animation(default_framerate=FRAMES_PER_SECOND)
-    colors = plot.route_colors(len(routes))
-    for number, (route, color) in enumerate(zip(routes, colors, strict=True)):
+    colors = plot.route_colors(len(routes) + len(named))
+    for number, (route, color) in enumerate(zip(routes, colors, strict=False)):
         if len(route.points) > 1:
-            draw_route(scene[f"route{number}"], city, route, color)
+            draw_route(scene[f"route{number}"], city, route, color, thin=bool(named))
+    flown = {name: flight for name, flight in named.items() if len(flight.log) > 1}
+    longest = max((flight.duration for flight in flown.values()), default=0.0)
+    for number, (name, color) in enumerate(zip(named, colors[len(routes) :], strict=True)):
+        if name in flown:
+            animate_flight(scene[f"flight{number}"], city, flown[name], color, longest, safe_distance, animation)
     if expansion:
         animate_expansion(scene["expansion"], city, routes[0].info["order"], animation)
-    elif routes and len(routes[0].points) > 1:
-        animate_flight(scene["uav"], city, routes[0], safe_distance, animation)
+    elif not named and routes and len(routes[0].points) > 1:
+        animate_route(scene["uav"], city, routes[0], safe_distance, animation)
     if animation.clips:
         scene.set_animation(animation, repetitions=1000)
-    return window.page(title or city.name, legend(city, routes, colors, risk))
+    return window.page(title or city.name, legend(city, routes, named, risk))
 
 
-def legend(city: City, routes: tuple[Route, ...], colors: list[str], risk: RiskMap | None = None) -> str:
+def legend(city: City, routes: tuple[Route, ...], flights: Mapping[str, Flight], risk: RiskMap | None = None) -> str:
     """What the colours mean and how large things are, as HTML."""
+    colors = plot.route_colors(len(routes) + len(flights))
     lines = [f"<b>{html.escape(city.name)}</b> · squares of {grid_spacing(city):g} m · x → east, y → north, z → up"]
-    for route, color in zip(routes, colors, strict=True):
-        text = f"{route.planner}: {route.length:.1f} m" if route.reached else f"{route.planner}: {route.reason}"
+    texts = [
+        f"{route.planner}: {route.length:.1f} m" if route.reached else f"{route.planner}: {route.reason}"
+        for route in routes
+    ]
+    texts += [plot.label_of_flight(name, flight) for name, flight in flights.items()]
+    for text, color in zip(texts, colors, strict=True):
         lines.append(f'<span style="color:{color}">&#9608;&#9608;</span> {html.escape(text)}')
-    if any(len(route.points) > 1 for route in routes):
-        lines.append("&#9679; start &nbsp; &#9650; goal")
+    marks = []
+    if any(len(route.points) > 1 for route in routes) or any(len(flight.log) > 1 for flight in flights.values()):
+        marks += ["&#9679; start", "&#9650; goal"]
+    if any(flight.outcome == "crashed" for flight in flights.values()):
+        marks.append(f'<b style="color:{plot.CRASH_COLOR}">&#10006;</b> crash')
+    if flights:
+        longest = max(flight.duration for flight in flights.values())
+        marks.append(f"{FLIGHT_SECONDS:g} s show {longest:.1f} s of flight")
+    if marks:
+        lines.append(" &nbsp; ".join(marks))
     if risk is not None:
         norm = plot.risk_norm(risk)
         stops = ",".join(plot.sequential_color(share) for share in np.linspace(0, 1, 9))
@@ -228,32 +266,97 @@ def draw_risk(scene: meshcat.Visualizer, risk_map: RiskMap, slice_height: float 
         paint("slice", risk_map.rate[:, :, k], risk_map.flyable[:, :, k], slice_height, 0.6)
 
 
-def draw_route(scene: meshcat.Visualizer, city: City, route: Route, color: str) -> None:
+def draw_route(scene: meshcat.Visualizer, city: City, route: Route, color: str, *, thin: bool = False) -> None:
     """A route as a tube, a ball at its start and a cone at its goal."""
-    radius = 0.004 * float(np.linalg.norm(city.bounds[1] - city.bounds[0]))
-    paint = int(color.lstrip("#"), 16)
-    scene["tube"].set_object(mesh(tube(route.points, radius)), g.MeshLambertMaterial(color=paint))
-    scene["start"].set_object(g.Sphere(2.5 * radius), g.MeshLambertMaterial(color=paint))
-    scene["start"].set_transform(translation_matrix(route.points[0]))
+    draw_way(scene, city, route.points, color, thickness=0.4 if thin else 1.0)
+    draw_goal(scene["goal"], city, route.points[-1], color)
+
+
+def draw_way(scene: meshcat.Visualizer, city: City, points: np.ndarray, color: str, *, thickness: float = 1.0) -> None:
+    """A tube along points, and a ball at the first of them."""
+    radius, material = tube_radius(city), g.MeshLambertMaterial(color=as_number(color))
+    scene["tube"].set_object(mesh(tube(points, thickness * radius)), material)
+    scene["start"].set_object(g.Sphere(2.5 * radius), material)
+    scene["start"].set_transform(translation_matrix(points[0]))
+
+
+def draw_goal(scene: meshcat.Visualizer, city: City, goal: np.ndarray, color: str) -> None:
+    """A cone around the goal."""
+    radius = tube_radius(city)
     cone = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 6 * radius]])
-    scene["goal"].set_object(mesh(tube(cone, 3 * radius, end_radius=0.0)), g.MeshLambertMaterial(color=paint))
-    scene["goal"].set_transform(translation_matrix(route.points[-1] - [0.0, 0.0, 3 * radius]))
+    shape = mesh(tube(cone, 3 * radius, end_radius=0.0))
+    scene.set_object(shape, g.MeshLambertMaterial(color=as_number(color)))
+    scene.set_transform(translation_matrix(goal - [0.0, 0.0, 3 * radius]))
 
 
-def animate_flight(
-    scene: meshcat.Visualizer, city: City, route: Route, safe_distance: float | None, animation: Animation
-) -> None:
-    """A quadrotor, larger than life, that flies the route at constant speed, again and again."""
+def tube_radius(city: City) -> float:
+    """Of a route's tube [m], by the size of the map."""
+    return 0.004 * float(np.linalg.norm(city.bounds[1] - city.bounds[0]))
+
+
+def as_number(color: str) -> int:
+    """#rrggbb as meshcat has it."""
+    return int(color.lstrip("#"), 16)
+
+
+def draw_uav(scene: meshcat.Visualizer, city: City, safe_distance: float | None) -> None:
+    """A quadrotor, larger than life, with the ball around it that should stay clear."""
     scale = 0.02 * float(np.linalg.norm(city.bounds[1] - city.bounds[0]))
     scene["body"].set_object(mesh(quadrotor(scale)), g.MeshLambertMaterial(color=0x222222, side=2))
     if safe_distance is not None:
         scene["clearance"].set_object(
             g.Sphere(safe_distance), g.MeshLambertMaterial(color=0xFFFFFF, transparent=True, opacity=0.35)
         )
-    scene.set_transform(translation_matrix(route.points[0]))
-    for point, share in zip(route.points, route.distance / max(route.length, 1e-9), strict=True):
-        with animation.at_frame(scene, round(share * FLIGHT_SECONDS * FRAMES_PER_SECOND)) as frame:
+
+
+def animate_route(
+    scene: meshcat.Visualizer, city: City, route: Route, safe_distance: float | None, animation: Animation
+) -> None:
+    """A UAV that flies a route at constant speed, again and again."""
+    draw_uav(scene, city, safe_distance)
+    share = route.distance / max(route.length, 1e-9)
+    move(scene, route.points, share * FLIGHT_SECONDS, animation)
+
+
+def animate_flight(
+    scene: meshcat.Visualizer,
+    city: City,
+    flight: Flight,
+    color: str,
+    longest: float,
+    safe_distance: float | None,
+    animation: Animation,
+) -> None:
+    """The track of a flight and a UAV on it, by a clock that shows `longest` seconds; a crash is a red X."""
+    time, points = plot.track(flight)
+    clock = time / longest * FLIGHT_SECONDS
+    draw_way(scene, city, points, color)
+    draw_uav(scene["uav"], city, safe_distance)
+    move(scene["uav"], np.vstack([points, points[-1]]), np.append(clock, LAST_FRAME / FRAMES_PER_SECOND), animation)
+    if flight.outcome == "arrived":
+        draw_goal(scene["goal"], city, points[-1], color)
+    if flight.outcome == "crashed":
+        arms = plot.cross(points[-1], 7 * tube_radius(city))
+        beams = np.concatenate([tube(arm, 1.6 * tube_radius(city)) for arm in arms])
+        through_walls = {"depthTest": False}  # a crash behind a building is to be seen, too
+        red = g.MeshBasicMaterial(color=as_number(plot.CRASH_COLOR), transparent=True, **through_walls)
+        scene["crash"].set_object(mesh(beams), red)
+        appear(scene, "crash", clock[-1] * FRAMES_PER_SECOND, animation)
+
+
+def move(scene: meshcat.Visualizer, points: np.ndarray, clock: np.ndarray, animation: Animation) -> None:
+    """Be at each of the points (N, 3) when the animation's clock (N,) [s] says so."""
+    scene.set_transform(translation_matrix(points[0]))
+    for point, moment in zip(points, clock, strict=True):
+        with animation.at_frame(scene, round(moment * FRAMES_PER_SECOND)) as frame:
             frame.set_transform(translation_matrix(point))
+
+
+def appear(scene: meshcat.Visualizer, name: str, moment: float, animation: Animation) -> None:
+    """Be unseen until a frame, and there until the animation begins again."""
+    for frame_number, visible in ((0, False), (max(round(moment), 1), True), (LAST_FRAME, True)):
+        with animation.at_frame(scene, frame_number) as frame:
+            frame[name].set_property("visible", "boolean", visible)
 
 
 def animate_expansion(scene: meshcat.Visualizer, city: City, order: np.ndarray, animation: Animation) -> None:
@@ -265,10 +368,7 @@ def animate_expansion(scene: meshcat.Visualizer, city: City, order: np.ndarray, 
         color = np.array(to_rgb(plot.sequential_color(number / max(len(batches) - 1, 1))), dtype=np.float32)
         name = f"batch{number}"
         scene[name].set_object(g.PointCloud(points, np.tile(color, (len(nodes), 1)).T, size=0.9 * city.cell))
-        appear = 1 + round(number * FLIGHT_SECONDS * FRAMES_PER_SECOND / len(batches))
-        for moment, visible in ((0, False), (appear, True), (round(1.2 * FLIGHT_SECONDS * FRAMES_PER_SECOND), True)):
-            with animation.at_frame(scene, moment) as frame:
-                frame[name].set_property("visible", "boolean", visible)
+        appear(scene, name, 1 + number * FLIGHT_SECONDS * FRAMES_PER_SECOND / len(batches), animation)
 
 
 def mesh(triangles: np.ndarray, colors: np.ndarray | None = None) -> g.TriangularMeshGeometry:

@@ -35,7 +35,7 @@ class Autopilot:
     speed : float, optional
         Over ground [m/s]; by default the UAV's cruise speed.
     trimmed : bool
-        Whether it knows the mean wind. If not, the wind holds the UAV off its route.
+        Whether it knows the mean wind, at each moment if that changes. If not, the wind holds the UAV off its route.
     gps : Gps
     monitor : Monitor, optional
         Watches the flight; each flight has a copy of it.

@@ -8,6 +8,7 @@ import numpy as np
 from uavlab.flight.autopilot import Autopilot
 from uavlab.flight.disturbance import GUSTS, OffsetProcess, Wind, gust_deviations
 from uavlab.flight.motion import Air, Body, Spring, State, drift_on, fly_on
+from uavlab.flight.path import Path
 from uavlab.resilience import Controller
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import dryden_parameters, rain_force
@@ -28,15 +29,22 @@ class Model(NamedTuple):
         """Offsets without a body are kept in units of σ: they stay what they are in metres."""
         if isinstance(self.parts[0], Spring):
             old, new = self.parts[0], to.parts[0]
-            ratio = np.divide(old.sigma, new.sigma, out=np.zeros(3), where=new.sigma > 0)
-            state.lags[:, 0] *= ratio
-            state.lags[:, 1] *= ratio * old.omega / new.omega
+            offset = old.mean + old.sigma * state.lags[:, 0] - new.mean
+            speed = old.sigma * state.lags[:, 1] * old.omega / new.omega
+            for lag, value in enumerate((offset, speed)):
+                state.lags[:, lag] = np.divide(value, new.sigma, out=np.zeros(3), where=new.sigma > 0)
 
 
 def model_of(
-    now: Wind | OffsetProcess, controller: Controller, uav: UAV, autopilot: Autopilot, altitude: float, time_step: float
+    now: Wind | OffsetProcess,
+    controller: Controller,
+    uav: UAV,
+    autopilot: Autopilot,
+    path: Path,
+    altitude: float,
+    time_step: float,
 ) -> Model:
-    """How a disturbance and a controller move the UAV."""
+    """How a disturbance and a controller move the UAV along a path."""
     if isinstance(now, OffsetProcess):
         sigma, keep, enter = now.step(time_step, controller)
         spring = Spring(np.array(now.mean), sigma, keep, enter, controller.natural_frequency, controller.speed_share)
@@ -55,10 +63,19 @@ def model_of(
         gps_velocity=gps.velocity,
         gps_every=max(round(1 / (gps.rate * time_step)), 1),
     )
-    return Model(fly_on, (body, air_of(now, uav, altitude, time_step)), controller.speed_share)
+    return Model(
+        fly_on, (body, air_of(now, passing_speed(now, path, controller), altitude, time_step)), controller.speed_share
+    )
 
 
-def air_of(wind: Wind, uav: UAV, altitude: float, time_step: float) -> Air:
+def passing_speed(wind: Wind, path: Path, controller: Controller) -> float:
+    """Speed of the mean wind past the UAV, its mean over a path; at least 1 m/s, or Dryden gusts would stand still."""
+    ground_velocity = controller.speed_share * path.on_legs[:, None] * path.direction
+    streams = np.linalg.norm(wind.mean - ground_velocity, axis=1)
+    return max(float(np.average(streams, weights=np.diff(path.distance))), 1.0)
+
+
+def air_of(wind: Wind, air_speed: float, altitude: float, time_step: float) -> Air:
     """The wind for compiled code; the frame of Dryden gusts is that of the mean wind."""
     frame, keep, enter, read = np.eye(3), np.zeros((3, 2, 2)), np.zeros((3, 2, 2)), np.zeros((3, 2))
     if wind.gusts == "ou":
@@ -67,9 +84,8 @@ def air_of(wind: Wind, uav: UAV, altitude: float, time_step: float) -> Air:
     elif wind.gusts == "dryden":
         east, north = np.array(wind.mean[:2]) / np.linalg.norm(wind.mean[:2])
         frame = np.array([[east, -north, 0.0], [north, east, 0.0], [0.0, 0.0, 1.0]])
-        passing = np.hypot(wind.speed, uav.cruise_speed)
         for axis, length in enumerate(dryden_parameters(altitude, wind.speed).scale_lengths):
-            keep[axis], covariance = lag_step(time_step * passing / length)
+            keep[axis], covariance = lag_step(time_step * air_speed / length)
             enter[axis] = np.linalg.cholesky(covariance)
         read = OUTPUT
     return Air(

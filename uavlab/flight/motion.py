@@ -12,8 +12,8 @@ from uavlab.vehicle import GRAVITY
 PREVIEW = 0.25
 """How far ahead and back the autopilot looks to know how its velocity has to change [s]."""
 
-LEAST_THRUST = 0.1
-"""Of the greatest: rotors can't push down."""
+LEAST_THRUST, LEAST_LIFT = 0.1, 0.5
+"""Of the greatest, and of the weight, whichever is less: rotors can't push down, but a strong UAV can still sink."""
 
 COLUMNS = ("time", "x", "y", "z", "x_ref", "y_ref", "z_ref", "along", "across", "up", "thrust", "speed")
 """What is logged: position and reference [m], offset in the route's frame [m], thrust [N], speed over ground [m/s]."""
@@ -95,7 +95,7 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
     thrust, stream = np.empty(3), np.empty(3)
     for _ in range(most):
         step = state.counts[0]
-        speed = advance(path, state, dt * body.pace, target_velocity) * body.pace
+        speed = advance(path, state, dt * body.pace if step > 0 else 0.0, target_velocity) * body.pace
         velocity_at(path, state, speed * PREVIEW, ahead)
         velocity_at(path, state, -speed * PREVIEW, back)
         blow(air, state, step, rng)
@@ -115,6 +115,10 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
             thrust[a] -= pressure * stream[a]
         thrust[2] += body.mass * GRAVITY + body.rain
         limit(body, thrust)
+        pulled = length(thrust)
+        outcome = note(path, space, state, dt, every, pulled, log)
+        if outcome != FLYING:
+            return outcome
         for a in range(3):
             stream[a] = air.mean[a] + state.gust[a] - state.velocity[a]
         pressure = body.drag * length(stream)
@@ -125,11 +129,7 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
             state.velocity[a] += dt * force / body.mass
             state.position[a] += dt * state.velocity[a]
             state.seen_position[a] += dt * state.seen_velocity[a]
-        pulled = length(thrust)
         state.sums[1] += dt * pulled**1.5
-        outcome = note(path, space, state, dt, every, pulled, log)
-        if outcome != FLYING:
-            return outcome
     return FLYING
 
 
@@ -153,7 +153,8 @@ def drift_on(spring, path, space, state, dt, most, every, rng, log):
                     spring.keep[1, 0] * x + spring.keep[1, 1] * v + spring.enter[1, 0] * one + spring.enter[1, 1] * two
                 )
             position = state.target[a] + spring.mean[a] + spring.sigma[a] * state.lags[a, 0]
-            state.velocity[a] = (position - state.position[a]) / dt
+            moved = (position - state.position[a]) / dt
+            state.velocity[a] = moved if state.counts[0] > 0 else spring.pace * target_velocity[a]
             state.position[a] = position
         outcome = note(path, space, state, dt, every, np.nan, log)
         if outcome != FLYING:
@@ -237,7 +238,8 @@ def blow(air, state, step, rng):
 @compiled
 def limit(body, thrust):
     """What the rotors can do of a thrust: first hold the height, then pull sideways, no more than the tilt allows."""
-    thrust[2] = min(max(thrust[2], LEAST_THRUST * body.thrust), body.thrust)
+    least = min(LEAST_THRUST * body.thrust, LEAST_LIFT * body.mass * GRAVITY)
+    thrust[2] = min(max(thrust[2], least), body.thrust)
     sideways = math.hypot(thrust[0], thrust[1])
     most = min(math.sqrt(body.thrust**2 - thrust[2] ** 2), thrust[2] * body.tan_tilt)
     if sideways > most:

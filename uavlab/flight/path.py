@@ -55,7 +55,16 @@ def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
         smooth = np.sqrt(agility * apart / turn)
         sharp = TURN_JUMP / (2 * np.sin(turn / 2))
     at_points[1:-1] = np.maximum(np.min([on_legs[:-1], on_legs[1:], smooth, sharp], axis=0), CREEP)
-    return Path(points, distance, direction, at_points, on_legs, min(BRAKING, agility))
+    braking = min(BRAKING, agility)
+    return Path(points, distance, direction, within_braking(at_points, distance, braking), on_legs, braking)
+
+
+def within_braking(at_points: np.ndarray, distance: np.ndarray, braking: float) -> np.ndarray:
+    """Speeds that can be reached from those before and braked to those after, however short the legs."""
+    gained = 2 * braking * distance
+    squared = np.minimum.accumulate(at_points**2 - gained) + gained
+    squared = np.minimum.accumulate((squared + gained)[::-1])[::-1] - gained
+    return np.clip(np.sqrt(np.maximum(squared, 0.0)), CREEP, at_points)
 
 
 def geometry(route: Route) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

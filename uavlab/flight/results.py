@@ -41,7 +41,8 @@ class Flight:
     changes: list[Change] = field(default_factory=list)
 
     def __repr__(self) -> str:
-        return f"<Flight: {self.outcome} after {self.duration:.1f} s{', ' * bool(self.reason)}{self.reason}>"
+        grounded = "grounded: " if self.outcome == "grounded" else ""
+        return f"<Flight: {grounded}{self.reason or f'arrived after {self.duration:.1f} s'}>"
 
     def column(self, name: str) -> np.ndarray:
         """A column of the log by its name, (T,)."""

@@ -13,20 +13,13 @@ from uavlab.city.voxels import distance_to_obstacle
 from uavlab.flight.autopilot import AUTOPILOT, Autopilot
 from uavlab.flight.disturbance import OffsetProcess, Wind
 from uavlab.flight.models import Model, model_of
-from uavlab.flight.motion import (
-    COLUMNS,
-    CRASHED,
-    FLYING,
-    Space,
-    State,
-    steps_to_goal,
-)
+from uavlab.flight.motion import ARRIVED, COLUMNS, CRASHED, FLYING, Space, State, steps_to_goal
 from uavlab.flight.path import Path, constant_speed, planned_speed, why_grounded
 from uavlab.flight.results import Flight, Flights
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route
 from uavlab.spline import Curve
-from uavlab.spline.smoothing import CONTACT
+from uavlab.spline.curve import CONTACT
 from uavlab.sweep import sweep
 from uavlab.vehicle import UAV
 from uavlab.weather.turbulence import HIGHEST, LOWEST
@@ -55,7 +48,7 @@ class Setup(NamedTuple):
     altitude: float
 
     def model(self, now: Wind | OffsetProcess, controller: Controller) -> Model:
-        return model_of(now, controller, self.uav, self.autopilot, self.altitude, self.time_step)
+        return model_of(now, controller, self.uav, self.autopilot, self.path, self.altitude, self.time_step)
 
 
 def fly(
@@ -250,35 +243,41 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
     watched = monitor is not None or callable(setup.disturbance)
     most = max(round(autopilot.interval / dt), 1) if watched else steps_to_goal(setup.path, model.pace, dt)
     logs, landed = [], False
-    while not landed:
+    while True:
         log = np.empty((most // every + 2, len(COLUMNS)))
         state.counts[1] = 0
         outcome = model.run(setup.path, setup.space, state, dt, most, every, generator, log)
         logs.append(log[: state.counts[1]])
-        if outcome != FLYING:
+        if outcome != FLYING or landed:
             break
         time = float(state.counts[0] * dt)
         then, advised = now_of(setup.disturbance, time), controller
+        if type(then) is not type(now):
+            raise ValueError(
+                f"disturbance must always return the same kind, got {type(then).__name__} at {time:g} s "
+                f"after {type(now).__name__}"
+            )
         if monitor:
             advised = monitor.observe(time, off_route(setup.path, state), room(setup.space, state))
-            landed = autopilot.strategy == "grounded" and advised != controller
+            if autopilot.strategy == "grounded" and advised != controller:
+                landed, most, every = True, 1, 1  # one step more, to log where
         if (then, advised) != (now, controller):
             now, controller = then, advised
             changed = setup.model(now, controller)
             model.hand_over(state, changed)
             model = changed
     flight_log = np.concatenate(logs)
-    where = f"after {flight_log[-1, 0]:.1f} s at {checks.show(state.position)}"
+    where = f"after {flight_log[-1, 0]:.1f} s at {checks.show(flight_log[-1, 1:4])}"
     energy = np.nan
     if isinstance(now, Wind):
         energy = float(state.sums[1] / np.sqrt(2 * now.air_density * setup.uav.rotor_area) / EFFICIENCY)
     changes = monitor.log if monitor else []
-    if landed:
-        name, reason = "landed", f"landed {where}: {changes[-1].reason}"
-    elif outcome == CRASHED:
+    if outcome == CRASHED:
         name, reason = "crashed", f"crashed {where}"
-    else:
+    elif outcome == ARRIVED:
         name, reason = "arrived", ""
+    else:
+        name, reason = "landed", f"landed {where}: {changes[-1].reason}"
     return Flight(name, reason, flight_log, float(state.sums[0]), energy, changes)
 
 
