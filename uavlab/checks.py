@@ -110,7 +110,10 @@ MAKERS = {
 def instance(name: str, value: object, kind: type) -> None:
     """Refuse a thing of another kind, such as a RiskMap where a City is asked for."""
     if not isinstance(value, kind):
-        raise ValueError(f"{name} must be a {kind.__name__}, got {type(value).__name__}: {MAKERS[kind.__name__]}")
+        article = "an" if kind.__name__.startswith("A") else "a"
+        raise ValueError(
+            f"{name} must be {article} {kind.__name__}, got {type(value).__name__}: {MAKERS[kind.__name__]}"
+        )
 
 
 def air(temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_hpa: npt.ArrayLike) -> None:

@@ -241,7 +241,7 @@ except ValueError as error:
 # | [08 REPARE](08_repare.ipynb) | How should the weather change the route, and what beats the paper's planner? |
 # | [09 ant colony](09_ant_colony.ipynb) | Can ants find the route of least risk, and how far from it do they end? |
 # | [10 swarms and beetles](10_particle_swarm_and_beetles.ipynb) | And swarms? What decides, if not the algorithm? |
-# | [11 B-splines](11_bsplines_and_feasibility.ipynb) | What does a UAV fly when a planner gives it a list of voxels, and can it? |
+# | [11 B-splines](11_bsplines_and_feasibility.ipynb) | What does a UAV fly of a list of voxels, and can it? |
 # | [12 flying in gusts](12_flying_in_gusts.ipynb) | Which planner's route survives the wind, and how sure is that? |
 #
 # All but this one end with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is

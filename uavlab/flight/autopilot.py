@@ -31,7 +31,7 @@ class Autopilot:
     Attributes
     ----------
     controller : Controller
-        ω_n of the position control, and the share of the speed; the monitor's, if there is one.
+        ω_n of the position control, and the share of the speed. A monitor that is listened to chooses its own.
     speed : float, optional
         Over ground [m/s]; by default the UAV's cruise speed.
     trimmed : bool
@@ -41,7 +41,7 @@ class Autopilot:
         Watches the flight; each flight has a copy of it.
     strategy : {"adaptive", "grounded", "fixed"}
         What becomes of the monitor's advice: its controller is taken; the UAV lands at once when it would change to the
-        advanced one; nothing.
+        advanced one (one that begins with it never asks for that); nothing, as if there were no monitor.
     interval : float
         How often the monitor, and a disturbance that changes, are looked at [s].
 
