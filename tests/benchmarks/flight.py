@@ -42,8 +42,7 @@ RATE = 100
 """Of RotorPy's steps [Hz], its default."""
 
 THRUST = 2.0
-"""Greatest thrust, of the weight. RotorPy's hummingbird has 10.2; but uavlab's rotors never push with less than a tenth
-of their most, which would then lift it."""
+"""Greatest thrust, of the weight, as usual for the size; RotorPy's hummingbird has 10.2."""
 
 KINDS = {"calm": (0.0, ""), "3 m/s, OU": (3.0, "ou"), "6 m/s, OU": (6.0, "ou"), "6 m/s, Dryden": (6.0, "dryden")}
 """Mean wind [m/s] and gusts; OU gusts have a third of it as their σ, and τ = 1 s."""
