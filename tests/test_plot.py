@@ -8,11 +8,14 @@ from matplotlib.quiver import Quiver
 
 from uavlab import plot, scene
 from uavlab.city import City
+from uavlab.flight import Flight, OffsetProcess, Rate, Wind, fly
+from uavlab.flight.motion import COLUMNS
+from uavlab.offsets import safety_domain
 from uavlab.planners import Comparison, astar, least_risk, pareto_front, potential_field, potential_forces
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
 from uavlab.route import Route
 from uavlab.spline import Curve
-from uavlab.vehicle import GRAVITY
+from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
 
 
 @pytest.fixture(scope="module")
@@ -362,3 +365,132 @@ def test_convergence_refuses_what_it_cannot_draw(change, arguments, message):
         plot.convergence(replace(runs_of_two_planners(), **change), **arguments)
     with pytest.raises(ValueError, match=r"comparison must be a Comparison, .* got list"):
         plot.convergence([1, 2])
+
+
+@pytest.fixture(scope="module")
+def flights_of_astar(table1, route):
+    """Six flights in offsets of 1 m beside walls: some crash, some arrive."""
+    flights = [fly(route, table1, LIGHT_QUADROTOR, OffsetProcess(1.0), rng=3, number=n) for n in range(6)]
+    assert {flight.outcome for flight in flights} == {"crashed", "arrived"}
+    return flights
+
+
+def straight_flight(outcome="arrived", seconds=1.0):
+    """A flight by hand, eastwards with 5 m/s."""
+    log = np.zeros((round(seconds / 0.02) + 1, len(COLUMNS)))
+    log[:, 0] = np.arange(len(log)) * 0.02
+    log[:, 1] = 5 * log[:, 0]
+    log[:, COLUMNS.index("across")] = np.sin(log[:, 0])
+    log[:, COLUMNS.index("speed")] = 5.0
+    log[:, COLUMNS.index("thrust")] = 17.0 + log[:, 0]
+    return Flight(outcome, "", log, 1.0, 100.0)
+
+
+def test_tracks_has_a_panel_for_each_name_and_a_cross_where_each_flight_crashed(table1, route, flights_of_astar):
+    crashed = [flight for flight in flights_of_astar if flight.outcome == "crashed"]
+    trapped = potential_field(table1, (90, 18, 30), (50, 44, 30))
+    figure = plot.tracks(
+        table1, {"A*": flights_of_astar}, {"A*": route, "field": trapped}, area=(40.0, 100.0, 5.0, 65.0)
+    )
+    astar_axes, field_axes = figure.axes
+    assert astar_axes.get_title() == f"A*: {len(crashed)} of 6 crash"
+    assert field_axes.get_title() == "field: doesn't arrive"
+    crosses = next(line for line in astar_axes.lines if line.get_marker() == "x")
+    assert np.allclose(crosses.get_xydata(), [flight.position[-1, :2] for flight in crashed])
+    drawn = [line.get_xydata() for line in astar_axes.lines]
+    assert any(np.array_equal(line, plot.track(flights_of_astar[0])[1][:, :2]) for line in drawn)
+    assert any(np.array_equal(line, route.points[:, :2]) for line in drawn)
+    assert (astar_axes.get_aspect(), astar_axes.get_xlim(), astar_axes.get_ylim()) == (1.0, (40, 100), (5, 65))
+    assert astar_axes.get_xlabel() == "x, east [m]"
+    named = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert named == ["flown", "planned", "crash", "start", "goal", "trapped"]
+
+
+def test_track_keeps_every_fifth_of_a_second_and_the_end():
+    time, places = plot.track(straight_flight(seconds=1.06))
+    assert time == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.06])
+    assert places[:, 0] == pytest.approx(5 * time)
+
+
+def test_crash_rates_are_points_with_intervals_on_a_scale_of_factors_and_none_seen_is_an_arrow():
+    rates = {
+        "calm": {"A*": Rate(700.0, 600.0, 800.0), "hazard": Rate(0.0, 0.0, 1.8)},
+        "gusty": {"A*": Rate(720.0, 650.0, 790.0), "hazard": Rate(14.0, 0.0, 21.0)},
+    }
+    axes = plot.crash_rates(rates, least=0.1).axes[0]
+    points = [tuple(line.get_xdata()) for line in axes.lines]
+    for ends in ((600.0, 800.0), (650.0, 790.0), (0.1, 21.0), (700.0,), (720.0,), (14.0,)):
+        assert any(len(drawn) == len(ends) and np.allclose(drawn, ends) for drawn in points)
+    (arrow,) = [text for text in axes.texts if text.arrow_patch is not None]
+    assert (arrow.xy[0], arrow.xyann[0]) == (0.1, 1.8)
+    assert axes.get_xscale() == "log"
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["calm", "gusty"]
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["A*", "hazard"]
+    colors = {line.get_label(): line.get_color() for line in axes.lines if line.get_label() in ("A*", "hazard")}
+    assert len(set(colors.values())) == 2
+
+
+def test_in_flight_draws_offset_speed_and_thrust_over_time_and_where_it_crashed():
+    flights = {"light": straight_flight(), "heavy": straight_flight("crashed", 0.5)}
+    panels = plot.in_flight(flights, **{"greatest thrust": 28.0}).axes
+    for axes, column in zip(panels, ("across", "speed", "thrust"), strict=True):
+        light, heavy = (line for line in axes.lines if line.get_label() in flights)
+        assert np.array_equal(light.get_ydata(), flights["light"].column(column))
+        assert np.array_equal(heavy.get_xdata(), flights["heavy"].time)
+        (cross,) = [line for line in axes.lines if line.get_marker() == "x"]
+        assert cross.get_xydata()[0] == pytest.approx((0.5, flights["heavy"].column(column)[-1]))
+        assert light.get_linestyle() != heavy.get_linestyle()
+    assert panels[2].get_xlabel() == "time in flight [s]"
+    assert [text.get_text() for text in panels[2].texts] == ["greatest thrust"]
+    assert panels[2].get_ylim()[1] > 28.0
+
+
+def test_safety_domain_is_a_density_that_sums_to_one_with_the_ellipses_on_it():
+    samples = np.random.default_rng(1).normal(0.0, [1.0, 0.5], (20_000, 2))
+    printed, right = (safety_domain(samples, as_printed=as_printed) for as_printed in (True, False))
+    axes = plot.safety_domain(samples, **{"3σ_as printed": printed, "right": right}).axes[0]
+    mesh = axes.collections[0]
+    density = np.ma.filled(mesh.get_array(), 0.0)
+    corners = mesh.get_coordinates()
+    bin_area = (corners[0, 1, 0] - corners[0, 0, 0]) * (corners[1, 0, 1] - corners[0, 0, 1])
+    assert np.nansum(density) * bin_area == pytest.approx(1.0, abs=0.01)
+    drawn = [line.get_xydata() for line in axes.lines]
+    assert all(any(np.array_equal(line, domain.ellipse) for line in drawn) for domain in (printed, right))
+    assert axes.get_legend().get_texts()[0].get_text() == f"3σ as printed: {printed.in_ellipse:.2%} inside"
+    assert axes.get_aspect() == 1.0
+    assert axes.get_xlim() == axes.get_ylim()
+
+
+def test_still_has_tracks_and_a_cross_where_one_crashed(table1, route, flights_of_astar):
+    crash = next(flight for flight in flights_of_astar if flight.outcome == "crashed")
+    axes = plot.still(table1, route, flights={"A*": crash}).axes[0]
+    arms = [line for line in axes.lines if line.get_color() == plot.CRASH_COLOR]
+    assert len(arms) == 2
+    for arm in arms:
+        assert np.mean(arm.get_data_3d(), axis=1) == pytest.approx(crash.position[-1])
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert names == ["A*, 66.4 m", f"A*: crashed after {crash.duration:.1f} s"]
+    assert not [line for line in plot.still(table1, route).axes[0].lines if line.get_color() == plot.CRASH_COLOR]
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (lambda city, route: plot.tracks(city, {}), "flights is empty: give at least one name"),
+        (lambda city, route: plot.tracks(city, {"A*": [route]}), "flights must be a Flight, got Route"),
+        (lambda city, route: plot.tracks(city, {"A*": straight_flight()}), "flights must be a list of Flight"),
+        (lambda city, route: plot.tracks(city, {}, {"A*": city}), "routes must be a Route, got City"),
+        (lambda city, route: plot.crash_rates({}), "rates must hold one to 6 planners, got 0"),
+        (lambda city, route: plot.crash_rates({"calm": {"A*": Rate(1, 0, 2)}}, least=0.0), "least must be"),
+        (lambda city, route: plot.in_flight({}), "flights must hold one to 6 that flew, got 0"),
+        (
+            lambda city, route: plot.in_flight([fly(route, city, LIGHT_QUADROTOR, Wind((40.0, 0.0)), rng=1)]),
+            "flights must hold one to 6 that flew, got 0",
+        ),
+        (lambda city, route: plot.safety_domain(np.zeros((5, 3))), "samples"),
+        (lambda city, route: plot.still(city, flights=route), "flights must be a list of Flight"),
+    ],
+)
+def test_flights_that_cannot_be_drawn_are_refused(table1, route, draw, message):
+    with pytest.raises(ValueError, match=message):
+        draw(table1, route)

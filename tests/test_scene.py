@@ -10,9 +10,11 @@ import umsgpack
 
 from uavlab import scene
 from uavlab.city import Building, City
-from uavlab.planners import astar, shortcut
+from uavlab.flight import OffsetProcess, Wind, fly
+from uavlab.planners import astar, repare, shortcut
 from uavlab.risk import RiskMap, reference_campus
 from uavlab.route import Route
+from uavlab.vehicle import LIGHT_QUADROTOR
 
 START, GOAL = (90, 18, 30), (20, 75, 75)
 
@@ -145,3 +147,91 @@ def test_a_slice_needs_a_risk_map_and_a_height_on_it(table1):
     campus = reference_campus()
     with pytest.raises(ValueError, match="height must lie on the map, 0 to 80 m"):
         scene.page(campus.city, risk=campus, slice_height=90.0)
+
+
+@pytest.fixture(scope="module")
+def crash_and_safe(table1):
+    """Two flights of REPARE Fig. 12's pair in offsets of 1 m: A* ends at a wall, REPARE arrives."""
+    ends = (90, 18, 30), (50, 44, 30)
+    routes = astar(table1, *ends), repare(table1, *ends)
+    crash, safe = (fly(route, table1, LIGHT_QUADROTOR, OffsetProcess(1.0), rng=3) for route in routes)
+    assert (crash.outcome, safe.outcome) == ("crashed", "arrived")
+    return {"A*": crash, "REPARE": safe}
+
+
+def keys_of(commands, path, name):
+    """Frames and values of an animation's track."""
+    animation = commands["", "set_animation"]["animations"]
+    (clip,) = [entry["clip"] for entry in animation if entry["path"] == path]
+    keys = next(track["keys"] for track in clip["tracks"] if track["name"] == name)
+    return np.array([key["time"] for key in keys]), [key["value"] for key in keys]
+
+
+def test_flights_run_by_one_clock_in_proportion_of_time(table1, crash_and_safe):
+    commands = commands_of(scene.page(table1, flights=crash_and_safe))
+    longest = max(flight.duration for flight in crash_and_safe.values())
+    for number, flight in enumerate(crash_and_safe.values()):
+        frames, places = keys_of(commands, f"/meshcat/flight{number}/uav", ".position")
+        shown = frames[:-1] / (scene.FLIGHT_SECONDS * scene.FRAMES_PER_SECOND) * longest
+        steps = np.searchsorted(flight.time, shown - 1e-9)
+        frame = longest / (scene.FLIGHT_SECONDS * scene.FRAMES_PER_SECOND)
+        gap = np.linalg.norm(flight.position[np.minimum(steps, len(flight.log) - 1)] - places[:-1], axis=1)
+        assert gap.max() < 8.0 * frame + 0.2  # half a frame's rounding at 5 m/s and what gusts add
+        assert places[-2] == pytest.approx(flight.position[-1])
+        assert places[-1] == places[-2]  # it stays where it ended
+        assert frames[-1] == scene.LAST_FRAME  # all begin again together
+        assert np.allclose(vertices_of(commands[f"/meshcat/flight{number}/tube", "set_object"])[0], places[0], atol=1.0)
+
+
+def test_crash_is_a_cross_that_appears_when_and_where_it_happens(table1, crash_and_safe):
+    commands = commands_of(scene.page(table1, flights=crash_and_safe))
+    crash = crash_and_safe["A*"]
+    beams = vertices_of(commands["/meshcat/flight0/crash", "set_object"])
+    assert (beams.min(axis=0) + beams.max(axis=0)) / 2 == pytest.approx(crash.position[-1], abs=0.1)
+    frames, visible = keys_of(commands, "/meshcat/flight0/crash", ".visible")
+    longest = max(flight.duration for flight in crash_and_safe.values())
+    moment = crash.duration / longest * scene.FLIGHT_SECONDS * scene.FRAMES_PER_SECOND
+    assert visible == [False, True, True]
+    assert frames.tolist() == [0, pytest.approx(moment, abs=0.51), scene.LAST_FRAME]
+    assert not any("flight1/crash" in path for path, _ in commands)
+    assert ("/meshcat/flight1/goal", "set_object") in commands
+    assert ("/meshcat/flight0/goal", "set_object") not in commands
+
+
+def test_routes_are_thin_beside_flights_and_nobody_flies_them(table1, route, crash_and_safe):
+    def radius(page):
+        first_ring = vertices_of(commands_of(page)["/meshcat/route0/tube", "set_object"])[:2]
+        return np.linalg.norm(first_ring - route.points[0], axis=1)
+
+    page = scene.page(table1, route, flights=crash_and_safe)
+    assert radius(page) == pytest.approx(0.4 * radius(scene.page(table1, route)), rel=1e-3)
+    assert len(page) < 600_000
+    assert not any(path.startswith("/meshcat/uav") for path, _ in commands_of(page))
+
+
+def test_legend_says_what_became_of_each_flight(table1, crash_and_safe):
+    page = scene.page(table1, flights=crash_and_safe)
+    crash, safe = crash_and_safe.values()
+    assert f"A*: crashed after {crash.duration:.1f} s" in page
+    assert f"REPARE: arrived after {safe.duration:.1f} s" in page
+    assert f"12 s show {safe.duration:.1f} s of flight" in page
+    assert "flight 2: arrived" in scene.page(table1, flights=list(crash_and_safe.values()))
+    assert "crash</" not in scene.page(table1, flights=[safe])
+    assert scene.show(table1, flights=crash_and_safe).still.startswith(b"\x89PNG")
+
+
+def test_grounded_flight_is_named_and_not_drawn(table1, route):
+    grounded = fly(route, table1, LIGHT_QUADROTOR, Wind((40.0, 0.0)), rng=1)
+    page = scene.page(table1, flights={"A*": grounded})
+    assert "A*: grounded" in page
+    assert not any(path.startswith("/meshcat/flight") for path, _ in commands_of(page))
+    assert scene.show(table1, flights=[grounded]).still
+
+
+def test_flights_that_are_none_are_refused(table1, route, crash_and_safe):
+    with pytest.raises(ValueError, match="flights must be a list of Flight, or Flight by name, got Flight"):
+        scene.page(table1, flights=crash_and_safe["A*"])
+    with pytest.raises(ValueError, match="flights must be a Flight, got Route"):
+        scene.page(table1, flights=[route])
+    with pytest.raises(ValueError, match="two animations"):
+        scene.page(table1, route, expansion=True, flights=crash_and_safe)

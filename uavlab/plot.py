@@ -586,9 +586,13 @@ def tracks(
         axes.set_title(title, fontsize=10)
     for axes in panels[0, 1:]:
         axes.set_ylabel("")
-    parts = [(ROUTE_COLORS[1], "-", "", "flown"), (ROUTE_COLORS[2], "--", "", "planned"),
-             (CRASH_COLOR, "", "x", "crash"),
-             (ROUTE_COLORS[2], "", "o", "start"), (ROUTE_COLORS[2], "", "^", "goal")]  # fmt: skip
+    parts: list[tuple[str, Any, str, str]] = [
+        (ROUTE_COLORS[1], "-", "", "flown"),
+        (ROUTE_COLORS[2], "--", "", "planned"),
+        (CRASH_COLOR, "", "x", "crash"),
+        (ROUTE_COLORS[2], "", "o", "start"),
+        (ROUTE_COLORS[2], "", "^", "goal"),
+    ]
     if any(not way.reached for way in planned.values()):
         parts.append((ROUTE_COLORS[2], "", "s", "trapped"))
     handles = [Line2D([], [], color=c, linestyle=line, marker=m, label=label) for c, line, m, label in parts]
@@ -670,8 +674,9 @@ def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
         axes.grid(alpha=0.3)
     for name, limit in limits.items():
         panels[2].axhline(limit, color="0.4", linewidth=1, linestyle=":")
-        panels[2].annotate(name, (0.995, limit), (0, -2), xycoords=("axes fraction", "data"),
-                           textcoords="offset points", ha="right", va="top", fontsize=8, color="0.3")  # fmt: skip
+        panels[2].annotate(name, (0.995, limit), (0, 1), xycoords=("axes fraction", "data"),
+                           textcoords="offset points", ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
+    panels[2].margins(y=0.12)
     panels[0].axhline(0.0, color="0.4", linewidth=1)
     panels[1].set_ylim(bottom=0.0)
     panels[2].set(xlabel="time in flight [s]", xlim=(0, max(flight.duration for flight in flown.values())))
@@ -701,7 +706,7 @@ def safety_domain(samples: npt.ArrayLike, **domains: SafetyDomain) -> Figure:
     reach = 1.15 * max([np.quantile(np.abs(points), 0.9995), *(np.abs(outline).max() for outline in outlines)])
     figure, axes = new_figure(6.6, 5.6)
     edges = np.linspace(-reach, reach, 61)
-    counts = np.histogram2d(*points.T, bins=(edges, edges))[0]
+    counts = np.histogram2d(points[:, 0], points[:, 1], bins=[edges, edges])[0]
     density = counts / len(points) / (edges[1] - edges[0]) ** 2
     image = axes.pcolormesh(edges, edges, np.where(density > 0, density, np.nan).T, cmap=SEQUENTIAL, norm=LogNorm())
     axes.set_facecolor("0.93")
