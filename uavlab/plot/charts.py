@@ -1,0 +1,170 @@
+"""Quantities along a route, of several planners, or by name."""
+
+from collections.abc import Sequence
+from itertools import cycle
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.planners.comparison import Comparison
+from uavlab.plot.style import (
+    CONVERGENCE_STYLES,
+    DPI,
+    ROUTE_COLORS,
+    check_drawn,
+    finished,
+    label_of,
+    new_figure,
+    route_colors,
+)
+from uavlab.route import Route
+
+
+def front(routes: Sequence[Route], *marked: Route, label: str = "risk ∫ r ds/dx [1/h]") -> Figure:
+    """Length against risk (the routes' `cost`): a Pareto front as a line with its points, other routes marked.
+
+    Parameters
+    ----------
+    routes : sequence of Route
+        As from `pareto_front`.
+    marked : Route
+        Others to compare, each with its cost in the same unit.
+    label : str
+        Of the vertical axis, with a unit.
+
+    Raises
+    ------
+    ValueError
+        If none of the routes arrives.
+    """
+    if not isinstance(routes, Sequence):
+        raise ValueError(f"routes must be a list, as from pareto_front, got {type(routes).__name__}")
+    for route in (*routes, *marked):
+        checks.instance("routes", route, Route)
+    if not any(route.reached for route in routes):
+        why = f": {routes[0].reason}" if routes else ", it is empty"
+        raise ValueError(f"routes must hold one that arrives{why}")
+    figure, axes = new_figure(6.4, 4.2)
+    axes.plot([r.length for r in routes], [r.cost for r in routes], "o-", color=ROUTE_COLORS[1], label="Pareto front",
+              drawstyle="steps-post", linewidth=1)  # fmt: skip
+    colors = [color for color in ROUTE_COLORS if color != ROUTE_COLORS[1]]
+    styles = cycle(zip(colors, "^sDvP", strict=True))
+    for route, (color, marker) in zip(marked, styles, strict=False):
+        axes.plot(route.length, route.cost, marker, color=color, markersize=9, label=label_of(route))
+    axes.set(xlabel="length [m]", ylabel=label, yscale="log")
+    axes.grid(alpha=0.3, which="both")
+    axes.legend(fontsize=8)
+    return finished(figure)
+
+
+def convergence(
+    comparison: Comparison,
+    by: str = "evaluations",
+    *,
+    until: int | None = None,
+) -> Figure:
+    """How planners came near the exact optimum: median gap over maps and seeds, with a band between the quartiles.
+
+    The gap is even up to 10 % and by factors beyond. A line begins where half of the runs have a route, and a band
+    ends where a quarter of them has none.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    by : {"evaluations", "iterations"}
+        What counts as effort.
+    until : int, optional
+        Last evaluation or iteration to show; by default all of them.
+
+    Raises
+    ------
+    ValueError
+        If `by` is neither, `until` is below 2, there are more than six planners, or no planner has a route in half of
+        its runs.
+    """
+    if not isinstance(comparison, Comparison):
+        raise ValueError(f"comparison must be a Comparison, as from compare_planners, got {type(comparison).__name__}")
+    if by not in ("evaluations", "iterations"):
+        raise ValueError(f"by must be 'evaluations' or 'iterations', got {by!r}")
+    if until is not None:
+        checks.whole("until", until, least=2)
+    if len(comparison.planners) > len(CONVERGENCE_STYLES):
+        raise ValueError(f"comparison must have at most {len(CONVERGENCE_STYLES)} planners, to tell their lines apart")
+    figure, axes = new_figure(8.4, 4.4)
+    runs = zip(comparison.planners, comparison.histories, comparison.iterations, strict=True)
+    for (name, histories, ends), (color, style) in zip(runs, CONVERGENCE_STYLES, strict=False):
+        made = np.arange(1, histories.shape[-1] + 1) if by == "evaluations" else ends
+        effort = made if by == "evaluations" else np.arange(1, len(ends) + 1)
+        gaps = 100 * histories.reshape(-1, histories.shape[-1])[:, made - 1]
+        low, high = np.quantile(gaps, [0.25, 0.75], axis=0, method="nearest")
+        shown = slice(until)
+        axes.plot(effort[shown], finite_or_nan(np.median(gaps, axis=0))[shown], color=color, linestyle=style,
+                  linewidth=2, label=name)  # fmt: skip
+        axes.fill_between(effort[shown], finite_or_nan(low)[shown], finite_or_nan(high)[shown], color=color, alpha=0.13,
+                          linewidth=0)  # fmt: skip
+    if not any(np.isfinite(line.get_ydata()).any() for line in axes.lines):
+        raise ValueError("comparison must have a planner with a route in half of its runs, to have a median gap")
+    axes.axhline(0.0, color="0.4", linewidth=1)
+    axes.annotate("exact optimum on the grid", (0.99, 0.0), (0, -3), xycoords=("axes fraction", "data"),
+                  textcoords="offset points", ha="right", va="top", fontsize=8, color="0.3")  # fmt: skip
+    axes.set_yscale("symlog", linthresh=10.0, linscale=1.0)
+    axes.set_yticks([-10, -5, 0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000], minor=False)
+    axes.yaxis.set_major_formatter("{x:g} %")
+    axes.yaxis.set_minor_locator(NullLocator())
+    effort, gaps = np.concatenate([line.get_xydata() for line in axes.lines[:-1]]).T
+    axes.set(xlabel=f"{by} made", ylabel="gap to the exact optimum", xlim=(0, effort.max()))
+    axes.set_ylim(min(-2.0, 1.2 * np.nanmin(gaps)), max(12.0, 1.5 * np.nanmax(gaps)))
+    axes.xaxis.set_major_formatter("{x:,g}")
+    axes.grid(alpha=0.3)
+    axes.legend(title="median, band: quartiles", title_fontsize=8, fontsize=8, loc="upper left",
+                bbox_to_anchor=(1.0, 1.0))  # fmt: skip
+    return finished(figure)
+
+
+def finite_or_nan(values: np.ndarray) -> np.ndarray:
+    """The values, those that aren't finite as NaN, where nothing is drawn."""
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def profile(city: City, *routes: Route, safe_distance: float | None = None) -> Figure:
+    """Height and clearance along routes, with the distance to keep as a dashed line if it is given [m]."""
+    check_drawn(city, routes)
+    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7.2, 4.6), dpi=DPI, layout="constrained")
+    for route, color in zip(routes, route_colors(len(routes)), strict=True):
+        if len(route.points) < 2:
+            continue
+        above.plot(route.distance, route.points[:, 2] - city.origin[2], color=color, label=label_of(route))
+        distance, clearance = route.clearance_profile(city)
+        below.plot(distance, clearance, color=color)
+    if safe_distance is not None:
+        below.axhline(safe_distance, color="0.3", linestyle="--", linewidth=1)
+        below.annotate(f"to keep: {safe_distance:g} m", (0.995, safe_distance), xycoords=("axes fraction", "data"),
+                       ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
+    above.set_ylabel("height [m]")
+    below.set_ylabel("clearance [m]")
+    below.set_xlabel("distance flown [m]")
+    if above.lines:
+        above.legend(fontsize=8)
+    for axes in (above, below):
+        axes.grid(alpha=0.3)
+        axes.margins(x=0.01)
+        axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
+    return finished(figure)
+
+
+def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
+    """Named values as horizontal bars, each with its number; `label` names the quantity and its unit."""
+    figure, axes = plt.subplots(figsize=(6.4, 0.5 * len(values) + 1.1), dpi=DPI, layout="constrained")
+    drawn = axes.barh(list(values), list(values.values()), color=ROUTE_COLORS[1])
+    axes.bar_label(drawn, [f"{v:,.0f}" if abs(v) >= 100 else f"{v:.3g}" for v in values.values()], padding=3)
+    axes.invert_yaxis()
+    axes.xaxis.set_major_formatter("{x:,g}")
+    axes.set_xlabel(label)
+    axes.set_title(title)
+    axes.margins(x=0.15)
+    axes.spines[["top", "right"]].set_visible(False)
+    return finished(figure)

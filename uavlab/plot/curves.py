@@ -1,0 +1,136 @@
+"""Curves: curvature and pitch along them, and how they pass corners."""
+
+from collections.abc import Sequence
+
+import matplotlib.pyplot as plt
+import numpy as np
+import numpy.typing as npt
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.plot.charts import finite_or_nan
+from uavlab.plot.style import DPI, ROUTE_COLORS, check_drawn, draw_map, finished, label_of, level_of, route_colors
+from uavlab.route import Route
+from uavlab.spline import Curve
+from uavlab.spline.limits import BANK, MAX_PITCH
+from uavlab.vehicle import GRAVITY
+
+
+def curve_profile(
+    *curves: Curve, speed: float, cell: float, bank: float = BANK, max_pitch: float = MAX_PITCH
+) -> Figure:
+    """Curvature and pitch along curves, with the papers' limits and ours (RISK-ACO Figs 9-10, PSO-BAS Figs 7-8).
+
+    Parameters
+    ----------
+    curves : Curve
+    speed : float
+        v [m/s], above 0: a bank holds a level turn up to the curvature g·tan(bank)/v².
+    cell : float
+        Edge of a voxel [m], above 0: the papers ask for a curvature below 1 per voxel.
+    bank, max_pitch : float
+        [rad]
+
+    Raises
+    ------
+    ValueError
+        If there is no curve, or a number is not above 0.
+    """
+    check_curves(curves)
+    for name, value in (("speed", speed), ("cell", cell), ("bank", bank), ("max_pitch", max_pitch)):
+        checks.positive_number(name, value)
+    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8.4, 5.4), dpi=DPI, layout="constrained")
+    for curve, color in zip(curves, route_colors(len(curves)), strict=True):
+        above.plot(curve.distance, finite_or_nan(curve.curvature), color=color, label=curve.planner)
+        above.plot(curve.distance, finite_or_nan(curve.level_curvature), ":", color=color, linewidth=1.2)
+        below.plot(curve.distance, np.degrees(curve.pitch), color=color)
+    above.plot([], ":", color="0.3", linewidth=1.2, label="level part of it")
+    limits = (
+        (above, 1 / cell, f"papers: 1 per\nvoxel of {cell:g} m"),
+        (above, GRAVITY * np.tan(bank) / speed**2, f"{np.degrees(bank):.0f}° of bank\nat {speed:g} m/s"),
+        (below, np.degrees(max_pitch), f"±{np.degrees(max_pitch):.0f}°"),
+        (below, -np.degrees(max_pitch), ""),
+    )
+    for axes, limit, text in limits:
+        axes.axhline(limit, color="0.3", linestyle="--", linewidth=1)
+        axes.annotate(text, (1.01, limit), xycoords=("axes fraction", "data"), va="center", fontsize=8, color="0.3")
+    above.set(ylabel="curvature κ [1/m]", ylim=(0, 1.15 * max(above.get_ylim()[1], 1 / cell)))
+    below.set(xlabel="distance flown [m]", ylabel="pitch [°]")
+    below.set_ylim(*(1.25 * max(np.degrees(max_pitch), *np.abs(below.get_ylim())) * np.array([-1, 1])))
+    figure.legend(fontsize=8, loc="outside upper center", ncols=4)
+    for axes in (above, below):
+        axes.grid(alpha=0.3)
+        axes.margins(x=0.01)
+    return finished(figure)
+
+
+def corner(
+    city: City, *curves: Curve, center: npt.ArrayLike, reach: float, diameter: float, route: Route | None = None
+) -> Figure:
+    """Curves about a point from above, as wide as the body, and with their control points; voxels at its height black.
+
+    Where the body touches an obstacle the curve is drawn in thick orange.
+
+    Parameters
+    ----------
+    city : City
+    curves : Curve
+        A panel for each.
+    center : (3,) array
+        Where to look [m].
+    reach : float
+        How far to see to each side [m], above 0.
+    diameter : float
+        Of the body [m], above 0.
+    route : Route, optional
+        What was smoothed; drawn dashed.
+
+    Raises
+    ------
+    ValueError
+        If there is no curve, the point's height isn't on the map, or a number is not above 0.
+    """
+    check_drawn(city, () if route is None else (route,))
+    check_curves(curves)
+    x, y, z = checks.three("center", center)
+    for name, value in (("reach", reach), ("diameter", diameter)):
+        checks.positive_number(name, value)
+    layer = np.where(city.occupied[:, :, level_of(city, z)], 1.0, np.nan)
+    figure, panels = plt.subplots(1, len(curves), figsize=(0.8 + 3.7 * len(curves), 4.4), dpi=DPI, squeeze=False,
+                                  sharey=True, layout="constrained")  # fmt: skip
+    for axes, curve in zip(panels[0], curves, strict=True):
+        draw_map(axes, city, layer, "Greys", vmin=0.0, vmax=1.6)
+        if route is not None:
+            axes.plot(*route.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2, label=label_of(route))
+        axes.add_collection(PolyCollection(list(swept(curve, diameter)), facecolor=ROUTE_COLORS[1], alpha=0.35))
+        axes.plot(*curve.points[:, :2].T, color=ROUTE_COLORS[1], label=f"curve and its body of {diameter:g} m")
+        touches = np.append(curve.least_distances(city, diameter) < diameter / 2, False)
+        axes.plot(*np.where(touches[:, None], curve.points, np.nan)[:, :2].T, color=ROUTE_COLORS[0], linewidth=4,
+                  label="touches an obstacle")  # fmt: skip
+        axes.plot(*curve.control[:, :2].T, "o", color=ROUTE_COLORS[2], markersize=4, label="control points")
+        axes.set(xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
+        clear, sharpest = curve.clearance(city), curve.curvature.max()
+        axes.set_title(f"{curve.planner}: {clear:.2f} m clear, κ ≤ {sharpest:.2f} 1/m", fontsize=9)
+    for axes in panels[0, 1:]:
+        axes.set_ylabel("")
+    handles, names = panels[0, 0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside lower center", ncols=len(names), fontsize=8)
+    return finished(figure)
+
+
+def swept(curve: Curve, width: float) -> np.ndarray:
+    """Corners of a quadrilateral between each two points of a curve, (P − 1, 4, 2) [m]: a band on the ground plan."""
+    east, north = curve.tangent[:, :2].T
+    side = np.column_stack([-north, east]) / np.maximum(np.hypot(east, north), 1e-9)[:, None] * width / 2
+    left, right = curve.points[:, :2] + side, curve.points[:, :2] - side
+    return np.stack([left[:-1], left[1:], right[1:], right[:-1]], axis=1)
+
+
+def check_curves(curves: Sequence[Curve]) -> None:
+    """Refuse what isn't a curve, or none at all."""
+    if not curves:
+        raise ValueError("curves is empty: give at least one, as from smooth(route, city, uav)")
+    for curve in curves:
+        checks.instance("curves", curve, Curve)

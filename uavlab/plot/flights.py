@@ -1,0 +1,256 @@
+"""Flights: tracks with crashes, crash rates, what happens over time, the safety domain."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import numpy.typing as npt
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.flight import Flight, Rate
+from uavlab.offsets import SafetyDomain
+from uavlab.plot.style import (
+    CONVERGENCE_STYLES,
+    CRASH_COLOR,
+    DPI,
+    ROUTE_COLORS,
+    SEQUENTIAL,
+    add_color_bar,
+    check_drawn,
+    draw_map,
+    finished,
+    new_figure,
+)
+from uavlab.route import Route
+
+TRACK_STEP = 0.2
+"""From point to point of a flight's track [s]."""
+
+
+def tracks(
+    city: City,
+    flights: Mapping[str, Sequence[Flight]],
+    routes: Mapping[str, Route] | None = None,
+    *,
+    area: tuple[float, float, float, float] | None = None,
+) -> Figure:
+    """Flights from above, a panel for each name: their tracks, and a red X where one crashed.
+
+    Parameters
+    ----------
+    city : City
+    flights : mapping of sequences of Flight
+        By name, as that of a planner; an empty one leaves the panel to its route.
+    routes : mapping of Route, optional
+        What was to be flown, for some of the names or for others; drawn dashed, with a square where one that doesn't
+        arrive ends.
+    area : (west, east, south, north), optional
+        Part of the map to show [m]; by default all of it.
+
+    Raises
+    ------
+    ValueError
+        If there is no name, or what stands behind it isn't flights.
+    """
+    planned = dict(routes or {})
+    check_drawn(city, tuple(planned.values()))
+    named = {name: list(named_flights(flights.get(name, ())).values()) for name in (planned | dict(flights))}
+    if not named:
+        raise ValueError("flights is empty: give at least one name, as in {'A*': [flight]}")
+    (west, south, _), (east, north, _) = city.bounds
+    west, east, south, north = (west, east, south, north) if area is None else area
+    height = 3.1 * (north - south) / (east - west) + 1.2
+    figure, panels = plt.subplots(1, len(named), figsize=(3.1 * len(named) + 0.5, height), dpi=DPI, squeeze=False,
+                                  sharey=True, layout="constrained")  # fmt: skip
+    built = np.where(city.occupied.any(axis=2), 1.0, np.nan)
+    for axes, (name, flown) in zip(panels[0], named.items(), strict=True):
+        draw_map(axes, city, built, "Greys", vmin=0.0, vmax=3.0)
+        for flight in flown:
+            axes.plot(*track(flight)[1][:, :2].T, color=ROUTE_COLORS[1], linewidth=0.8, alpha=0.6)
+        ends = np.array([flight.position[-1, :2] for flight in flown if flight.outcome == "crashed"]).reshape(-1, 2)
+        title = f"{name}: {len(ends)} of {len(flown)} crash" if flown else name
+        if name in planned:
+            way = planned[name]
+            axes.plot(*way.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2)
+            axes.plot(*way.points[:1, :2].T, "o", color=ROUTE_COLORS[2], markersize=7)
+            mark = "^" if way.reached else "s"
+            axes.plot(*way.points[-1:, :2].T, mark, color=ROUTE_COLORS[2], markersize=7)
+            title = title if way.reached else f"{name}: doesn't arrive"
+        axes.plot(*ends.T, "x", color=CRASH_COLOR, markersize=8, markeredgewidth=2, zorder=5)
+        axes.set(xlim=(west, east), ylim=(south, north))
+        axes.set_title(title, fontsize=10)
+    for axes in panels[0, 1:]:
+        axes.set_ylabel("")
+    parts: list[tuple[str, Any, str, str]] = [
+        (ROUTE_COLORS[1], "-", "", "flown"),
+        (ROUTE_COLORS[2], "--", "", "planned"),
+        (CRASH_COLOR, "", "x", "crash"),
+        (ROUTE_COLORS[2], "", "o", "start"),
+        (ROUTE_COLORS[2], "", "^", "goal"),
+    ]
+    if any(not way.reached for way in planned.values()):
+        parts.append((ROUTE_COLORS[2], "", "s", "trapped"))
+    handles = [Line2D([], [], color=c, linestyle=line, marker=m, label=label) for c, line, m, label in parts]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=8)
+    return finished(figure)
+
+
+def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01) -> Figure:
+    """Crashes per 1 000 flights with their intervals, by factors: a group for each case, a colour for each planner.
+
+    Parameters
+    ----------
+    rates : mapping of mappings
+        Case → planner → what `uavlab.flight.crash_rate` returns.
+    least : float
+        Where the axis begins; a rate of 0 is an arrow down from the upper end of its interval.
+
+    Raises
+    ------
+    ValueError
+        If there is no case, or there are more than six planners.
+    """
+    planners = list(dict.fromkeys(name for by_planner in rates.values() for name in by_planner))
+    if not 1 <= len(planners) <= len(ROUTE_COLORS):
+        raise ValueError(f"rates must hold one to {len(ROUTE_COLORS)} planners, got {len(planners)}")
+    checks.positive_number("least", least)
+    figure, axes = new_figure(8.6, 0.62 * len(rates) * max(len(planners) / 4, 0.7) + 1.5)
+    apart = 0.8 / len(planners)
+    for number, (name, color, marker) in enumerate(zip(planners, ROUTE_COLORS, "osD^vP", strict=False)):
+        axes.plot([], [], marker, color=color, label=name)
+        for row, by_planner in enumerate(rates.values()):
+            if name not in by_planner:
+                continue
+            rate, y = by_planner[name], row + (number - (len(planners) - 1) / 2) * apart
+            if rate.per_thousand > 0:
+                axes.plot([max(rate.low, least), rate.high], [y, y], color=color, linewidth=2)
+                axes.plot(rate.per_thousand, y, marker, color=color, markersize=6)
+            else:
+                axes.annotate("", (least, y), (rate.high, y), arrowprops={"arrowstyle": "-|>", "color": color})
+                axes.plot(rate.high, y, "|", color=color, markersize=8, markeredgewidth=2)
+    axes.set(xscale="log", xlim=(least, 1300), ylim=(len(rates) - 0.45, -0.55),
+             xlabel="crashes per 1 000 flights, with 95 % intervals (arrow: none seen)")  # fmt: skip
+    axes.set_yticks(range(len(rates)), list(rates))
+    axes.xaxis.set_major_formatter("{x:,g}")
+    axes.grid(axis="x", alpha=0.3)
+    for border in range(1, len(rates)):
+        axes.axhline(border - 0.5, color="0.85", linewidth=0.8)
+    axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return finished(figure)
+
+
+def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
+    """How flights went, over time: offset across the route, speed over ground and thrust.
+
+    Parameters
+    ----------
+    flights : mapping of Flight
+        By name, at most six; an X where one crashed.
+    limits : float
+        Thrust limits [N] to mark, by name.
+
+    Raises
+    ------
+    ValueError
+        If there is none that flew, or there are more than six.
+    """
+    flown = {name: flight for name, flight in named_flights(flights).items() if len(flight.log)}
+    if not 1 <= len(flown) <= len(CONVERGENCE_STYLES):
+        raise ValueError(f"flights must hold one to {len(CONVERGENCE_STYLES)} that flew, got {len(flown)}")
+    figure, panels = plt.subplots(3, 1, figsize=(8.6, 6.4), dpi=DPI, sharex=True, layout="constrained")
+    quantities = ("across", "offset across the route,\nleft is positive [m]"), ("speed", "speed over ground\n[m/s]")
+    for axes, (column, label) in zip(panels, (*quantities, ("thrust", "thrust [N]")), strict=True):
+        for (name, flight), (color, style) in zip(flown.items(), CONVERGENCE_STYLES, strict=False):
+            values = flight.column(column)
+            axes.plot(flight.time, values, color=color, linestyle=style, linewidth=1.2, label=name)
+            if flight.outcome == "crashed":
+                axes.plot(flight.time[-1], values[-1], "x", color=CRASH_COLOR, markersize=9, markeredgewidth=2.5)
+        axes.set_ylabel(label)
+        axes.grid(alpha=0.3)
+    for name, limit in limits.items():
+        panels[2].axhline(limit, color="0.4", linewidth=1, linestyle=":")
+        panels[2].annotate(name, (0.995, limit), (0, 1), xycoords=("axes fraction", "data"),
+                           textcoords="offset points", ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
+    panels[2].margins(y=0.12)
+    panels[0].axhline(0.0, color="0.4", linewidth=1)
+    panels[1].set_ylim(bottom=0.0)
+    panels[2].set(xlabel="time in flight [s]", xlim=(0, max(flight.duration for flight in flown.values())))
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=8)
+    return finished(figure)
+
+
+def safety_domain(samples: npt.ArrayLike, **domains: SafetyDomain) -> Figure:
+    """Offsets as a heat map of their density, with the ellipses of safety domains around them (REPARE Fig. 18).
+
+    Parameters
+    ----------
+    samples : (N, 2) array
+        Offsets across the route and up [m], such as `Flights.samples`.
+    domains : SafetyDomain
+        By name (`_` for a blank), at most three.
+
+    Raises
+    ------
+    ValueError
+        If the samples aren't (N, 2) and finite, or there are more than three domains.
+    """
+    points = checks.samples(samples, least=3, axes=2)
+    if len(domains) > 3:
+        raise ValueError(f"domains must be at most three, got {len(domains)}")
+    outlines = [domain.ellipse for domain in domains.values()]
+    reach = 1.15 * max([np.quantile(np.abs(points), 0.9995), *(np.abs(outline).max() for outline in outlines)])
+    figure, axes = new_figure(6.6, 5.6)
+    edges = np.linspace(-reach, reach, 61)
+    counts = np.histogram2d(points[:, 0], points[:, 1], bins=[edges, edges])[0]
+    density = counts / len(points) / (edges[1] - edges[0]) ** 2
+    image = axes.pcolormesh(edges, edges, np.where(density > 0, density, np.nan).T, cmap=SEQUENTIAL, norm=LogNorm())
+    axes.set_facecolor("0.93")
+    styles = zip((ROUTE_COLORS[0], "#FFFFFF", ROUTE_COLORS[3]), ("-", "--", "-."), strict=True)
+    for (name, domain), (color, style) in zip(domains.items(), styles, strict=False):
+        label = f"{name.replace('_', ' ')}: {domain.in_ellipse:.2%} inside"
+        axes.plot(*domain.ellipse.T, color="black", linewidth=3.6)
+        axes.plot(*domain.ellipse.T, style, color=color, linewidth=2.2, label=label)
+    axes.set(xlabel="offset across the route, left is positive [m]", ylabel="offset up [m]", aspect="equal")
+    add_color_bar(figure, axes, image, "density [1/m²], grey: none seen")
+    if domains:
+        axes.legend(fontsize=8, loc="upper right", facecolor="0.75", framealpha=1.0)
+    return finished(figure)
+
+
+def named_flights(flights: Sequence[Flight] | Mapping[str, Flight]) -> dict[str, Flight]:
+    """Flights by name, or by number where they have none."""
+    if not isinstance(flights, Sequence | Mapping):
+        raise ValueError(f"flights must be a list of Flight, or Flight by name, got {type(flights).__name__}")
+    named = flights if isinstance(flights, Mapping) else {f"flight {n + 1}": f for n, f in enumerate(flights)}
+    for flight in named.values():
+        checks.instance("flights", flight, Flight)
+    return dict(named)
+
+
+def track(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
+    """Time (P,) [s] and position (P, 3) [m] every fifth of a second, and where it ended."""
+    last = len(flight.log) - 1
+    step = flight.duration / max(last, 1) or TRACK_STEP
+    rows = list(range(0, last, max(round(TRACK_STEP / step), 1)))
+    if last >= 0:
+        rows.append(last)
+    return flight.time[rows], flight.position[rows]
+
+
+def cross(place: np.ndarray, reach: float) -> np.ndarray:
+    """The two arms of an upright X as seen from the south-east, (2, 2, 3) [m]."""
+    across = np.array([np.cos(np.pi / 6), np.sin(np.pi / 6), 0.0])
+    arms = np.array([[-across, across], [across, -across]])
+    arms[:, 0, 2], arms[:, 1, 2] = -1.0, 1.0
+    return place + reach * arms
+
+
+def label_of_flight(name: str, flight: Flight) -> str:
+    """Who flew, and what became of it."""
+    when = "" if flight.outcome == "grounded" else f" after {flight.duration:.1f} s"
+    return f"{name}: {flight.outcome}{when}"

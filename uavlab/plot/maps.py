@@ -1,0 +1,252 @@
+"""The city from above or in section, with routes, fields, risk and searches."""
+
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import numpy.typing as npt
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.planners.potential_field import potential_forces
+from uavlab.plot.style import (
+    DPI,
+    ROUTE_COLORS,
+    SEQUENTIAL,
+    add_color_bar,
+    check_drawn,
+    draw_map,
+    draw_routes,
+    finished,
+    level_of,
+    new_figure,
+)
+from uavlab.risk import RiskMap
+from uavlab.route import Route
+
+
+def plan(city: City, *routes: Route) -> Figure:
+    """The city from above, darker where it is higher, with routes.
+
+    Parameters
+    ----------
+    city : City
+    routes : Route
+        Those without points are named in the legend.
+    """
+    check_drawn(city, routes)
+    figure, axes = new_figure(6.4, 5.4)
+    tops = np.where(city.occupied, (np.arange(city.shape[2]) + 1) * city.cell, 0).max(axis=2)
+    image = draw_map(axes, city, np.where(tops > 0, tops, np.nan), "Greys", vmin=0.0, vmax=1.3 * max(tops.max(), 1.0))
+    add_color_bar(figure, axes, image, "top of the buildings above the ground [m]").ax.set_ylim(0, max(tops.max(), 1.0))
+    draw_routes(axes, routes)
+    axes.set_title(city.name)
+    return finished(figure)
+
+
+RISK_LABEL = "risk r [deaths per hour of flight]"
+
+
+def section(
+    city: City,
+    height: float,
+    values: np.ndarray | None = None,
+    *routes: Route,
+    label: str = "clearance [m]",
+    norm: Normalize | None = None,
+) -> Figure:
+    """A horizontal section: buildings black, and values of the voxels at this height in colour.
+
+    Parameters
+    ----------
+    city : City
+    height : float
+        Where to cut [m].
+    values : (nx, ny, nz) array, optional
+        What to colour; the clearance by default.
+    routes : Route
+        Seen from above.
+    label : str
+        Of the colour bar, with a unit.
+    norm : matplotlib.colors.Normalize, optional
+        From values to colours; by default evenly over the values shown.
+
+    Raises
+    ------
+    ValueError
+        If the height lies outside of the map.
+    """
+    check_drawn(city, routes)
+    k = level_of(city, height)
+    figure, axes = new_figure(6.4, 5.4)
+    layer = (city.clearance if values is None else np.asarray(values))[:, :, k]
+    image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL, norm=norm)
+    add_color_bar(figure, axes, image, label)
+    axes.set_facecolor("black")
+    draw_routes(axes, routes)
+    axes.set_title(f"{city.name}, {height:g} m above the ground (buildings black)")
+    return finished(figure)
+
+
+def field(
+    city: City,
+    height: float,
+    goal: npt.ArrayLike,
+    *routes: Route,
+    area: tuple[float, float, float, float] | None = None,
+    spacing: float = 3.0,
+    **setting: Any,
+) -> Figure:
+    """A potential field in a horizontal section: its potential as colours and lines, arrows along its force.
+
+    Parameters
+    ----------
+    city : City
+    height : float
+        Where to cut [m].
+    goal : (3,) array
+        What attracts [m].
+    routes : Route
+        Seen from above.
+    area : (west, east, south, north), optional
+        Part of the map to show [m]; by default all of it.
+    spacing : float
+        From arrow to arrow [m].
+    setting
+        Of the field, as for `potential_forces`.
+
+    Raises
+    ------
+    ValueError
+        If the height lies outside of the map, or an argument is out of its range.
+    """
+    check_drawn(city, routes)
+    checks.positive("spacing", spacing)
+    k = level_of(city, height)
+    west, east, south, north = (*city.bounds[:, 0], *city.bounds[:, 1]) if area is None else area
+
+    def sampled(step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        x, y = np.meshgrid(np.arange(west + step / 2, east, step), np.arange(south + step / 2, north, step))
+        points = np.stack([x, y, np.full(x.shape, height)], axis=-1)
+        pull, push, potential = potential_forces(city, points, goal, **setting)
+        free = city.is_free(points)
+        return points, np.where(free[..., None], pull + push, np.nan), np.where(free, potential, np.nan)
+
+    figure, axes = new_figure(6.4, 5.4)
+    draw_map(axes, city, np.where(city.occupied[:, :, k], 1.0, np.nan), "gray_r", vmin=0, vmax=1)
+    points, _, potential = sampled(max(east - west, north - south) / 200)
+    levels = MaxNLocator(20).tick_values(np.nanmin(potential), np.nanquantile(potential, 0.93))  # walls rise out of it
+    image = axes.contourf(*points[..., :2].T, potential.T, levels, cmap=SEQUENTIAL, extend="max")
+    axes.contour(*points[..., :2].T, potential.T, levels, colors="white", linewidths=0.4)
+    add_color_bar(figure, axes, image, "potential U [unit of force · m]")
+    points, force, _ = sampled(spacing)
+    with np.errstate(invalid="ignore"):
+        direction = force / np.linalg.norm(force, axis=-1, keepdims=True)
+    axes.quiver(*points[..., :2].T, *direction[..., :2].T, pivot="mid", angles="xy", scale_units="xy",
+                scale=1.2 / spacing, width=0.005, edgecolor="white", linewidth=0.5)  # fmt: skip
+    draw_routes(axes, routes)
+    axes.set(xlim=(west, east), ylim=(south, north))
+    axes.set_title(f"{city.name}, {height:g} m above the ground (buildings black)")
+    return finished(figure)
+
+
+def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
+    """The risk of flying at a height; buildings black, hatched where the UAV would be too low.
+
+    Colours are a scale of factors, the same at all heights.
+
+    Parameters
+    ----------
+    risk_map : RiskMap
+    height : float
+        Where to cut [m].
+    routes : Route
+        Seen from above.
+
+    Raises
+    ------
+    ValueError
+        If the height lies outside of the map.
+    """
+    checks.instance("risk_map", risk_map, RiskMap)
+    city = risk_map.city
+    k = level_of(city, height)
+    figure = section(city, height, risk_map.rate, *routes, label=RISK_LABEL, norm=risk_norm(risk_map))
+    too_low = ~(risk_map.flyable | city.occupied)[:, :, k]
+    if too_low.any():
+        axes = figure.axes[0]
+        axes.set_title(f"{city.name}, {height:g} m above the ground (too low hatched)")
+        axes.contourf(
+            city.coordinates(0), city.coordinates(1), too_low.T, levels=[0.5, 1.5], colors="none", hatches=["////"]
+        )
+    return finished(figure)
+
+
+def layers(risk_map: RiskMap) -> Figure:
+    """What a risk map was made from: people, shelter and cars, on three plans."""
+    checks.instance("risk_map", risk_map, RiskMap)
+    figure, panels = plt.subplots(1, 3, figsize=(11.4, 4.0), dpi=DPI, layout="constrained", sharey=True)
+    shown = (
+        (1e3 * risk_map.population_density, "thousands of people per km²"),
+        (risk_map.shelter, "shelter $p_s$ (0 none, 1 industry)"),
+        (1e6 * risk_map.vehicle_share, "ground under cars [m² per km²]"),
+    )
+    for axes, (layer, label) in zip(panels, shown, strict=True):
+        image = draw_map(axes, risk_map.city, layer, SEQUENTIAL)
+        figure.colorbar(image, ax=axes, location="bottom", label=label)
+    for axes in panels[1:]:
+        axes.set_ylabel("")
+    return finished(figure)
+
+
+def expansions(city: City, *routes: Route) -> Figure:
+    """Which columns of the map each search expanded, and when: dark first, bright last.
+
+    Parameters
+    ----------
+    city : City
+    routes : Route
+        Planned with `record=True`.
+
+    Raises
+    ------
+    ValueError
+        If a route didn't record its order, or none is given.
+    """
+    if not routes or any("order" not in route.info for route in routes):
+        raise ValueError("routes must be planned with record=True, at least one")
+    figure, all_axes = plt.subplots(
+        1, len(routes), figsize=(3.4 * len(routes) + 1, 3.7), dpi=DPI, squeeze=False, layout="constrained"
+    )
+    built = city.occupied.any(axis=2)
+    for axes, route in zip(all_axes[0], routes, strict=True):
+        order = route.info["order"]
+        first = np.full(city.shape[:2], np.inf)
+        index = city.index_of(order)
+        np.minimum.at(first, (index[:, 0], index[:, 1]), np.arange(len(order)) / len(order))
+        draw_map(axes, city, np.where(built, 1.0, np.nan), "Greys", vmin=0, vmax=3)
+        image = draw_map(axes, city, np.where(np.isfinite(first), first, np.nan), SEQUENTIAL, vmin=0, vmax=1)
+        if len(route.points) > 1:
+            axes.plot(*route.points[:, :2].T, color=ROUTE_COLORS[0], linewidth=1.5)
+        axes.set_title(f"{route.info.get('heuristic', route.planner)}: {len(order):,} expanded", fontsize=10)
+    figure.colorbar(image, ax=all_axes, label="first looked at, as a share of the search")
+    return finished(figure)
+
+
+def risk_norm(risk_map: RiskMap) -> LogNorm:
+    """From risk to colours by factors: from the least above 0 to the greatest where the UAV may fly, or farther down.
+
+    It spans a factor of ten at least, so that nearly equal risks look so, and the bar can be read.
+    """
+    rates = risk_map.rate[risk_map.flyable & (risk_map.rate > 0)]
+    least, most = (rates.min(), rates.max()) if len(rates) else (1e-9, 1e-9)
+    return LogNorm(min(least, most / 10), most, clip=True)
+
+
+def ground_risk(risk_map: RiskMap) -> np.ndarray:
+    """Risk in the lowest voxel of each column where the UAV may fly, (nx, ny) [1/h]."""
+    lowest = risk_map.flyable.argmax(axis=2)
+    return np.take_along_axis(risk_map.rate, lowest[..., None], axis=2)[..., 0]

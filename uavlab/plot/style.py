@@ -1,0 +1,89 @@
+"""What all figures share: colours that colour-blind readers can tell apart, maps from above, labels."""
+
+from collections.abc import Sequence
+
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.risk import RiskMap
+from uavlab.route import Route
+
+ROUTE_COLORS = ("#D55E00", "#0072B2", "#000000", "#CC79A7", "#009E73", "#E69F00")
+CONVERGENCE_STYLES = tuple(zip(ROUTE_COLORS, ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2))), strict=True))
+"""Colour and line style of one planner among several: told apart in grey, too."""
+CRASH_COLOR = "#D00000"
+"""Of an X; nothing else has that shape, for readers to whom red is brown."""
+SEQUENTIAL = matplotlib.colormaps["cividis"]
+DPI = 100
+
+
+def route_colors(count: int) -> list[str]:
+    """A colour for each of `count` routes, as #rrggbb."""
+    return [ROUTE_COLORS[i % len(ROUTE_COLORS)] for i in range(count)]
+
+
+def sequential_color(share: float) -> str:
+    """The colour of a share from 0 (dark) to 1 (bright), as #rrggbb."""
+    return to_hex(SEQUENTIAL(share))
+
+
+def level_of(city: City, height: float) -> int:
+    """Index of the layer of voxels at a height [m]; `ValueError` if it lies outside of the map."""
+    checks.number("height", height)
+    k = int(city.cell_of((city.origin[0], city.origin[1], height))[2])
+    if not 0 <= k < city.shape[2]:
+        low, high = city.bounds[:, 2]
+        raise ValueError(f"height must lie on the map, {low:g} to {high:g} m, got {height!r}")
+    return k
+
+
+def check_drawn(city: City, routes: Sequence[Route], risk_map: RiskMap | None = None) -> None:
+    """Refuse what can't be drawn: a risk map in the place of the city, a list of routes in that of a route."""
+    checks.instance("city", city, City)
+    for route in routes:
+        checks.instance("routes", route, Route)
+    if risk_map is not None:
+        checks.instance("risk", risk_map, RiskMap)
+
+
+def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
+    return plt.subplots(figsize=(width, height), dpi=DPI, layout="constrained")
+
+
+def draw_map(axes: Axes, city: City, values: np.ndarray, colors, **limits):
+    """Values (nx, ny) on the ground plan, with axes in metres and equal scales."""
+    (west, south, _), (east, north, _) = city.bounds
+    axes.set(xlabel="x, east [m]", ylabel="y, north [m]", aspect="equal")
+    return axes.imshow(values.T, origin="lower", extent=(west, east, south, north), cmap=colors, **limits)
+
+
+def add_color_bar(figure: Figure, axes: Axes, image, label: str):
+    """A colour bar beside a map, as high as the map."""
+    return figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
+
+
+def draw_routes(axes: Axes, routes: Sequence[Route]) -> None:
+    """Routes from above: a disc where each starts, a triangle at its goal."""
+    for route, color in zip(routes, route_colors(len(routes)), strict=True):
+        axes.plot(*route.points[:, :2].T, color="white", linewidth=3.5)
+        axes.plot(*route.points[:, :2].T, color=color, linewidth=2, label=label_of(route))
+        for point, marker in ((route.points[:1], "o"), (route.points[-1:], "^")):
+            axes.plot(*point[:, :2].T, marker, color=color, markersize=9, markeredgecolor="white")
+    if routes:
+        axes.figure.legend(loc="outside lower center", fontsize=8)
+
+
+def label_of(route: Route) -> str:
+    return f"{route.planner}, {route.length:.1f} m" if route.reached else f"{route.planner}: not reached"
+
+
+def finished(figure: Figure) -> Figure:
+    """The figure, closed for pyplot: a notebook shows it once, where the cell returns it."""
+    plt.close(figure)
+    return figure
