@@ -183,7 +183,14 @@ def flown(by_planner, disturbance, count=20, **options):
 
 
 calm = Wind(gusts="none")
-plot.tracks(city, flown(routes["far"], calm), routes["far"])
+in_calm = flown(routes["far"], calm)
+plot.tracks(city, in_calm, routes["far"])
+
+# %% [markdown]
+# The first flight of each in space, all by the same clock:
+
+# %%
+scene.show(city, flights={planner: flights[0] for planner, flights in in_calm.items()})
 
 # %% [markdown]
 # In calm air A* crashes! Its route passes at exactly half a metre from the walls, and the body has a radius of half a
