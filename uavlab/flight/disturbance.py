@@ -7,6 +7,7 @@ import numpy.typing as npt
 from scipy.integrate import quad
 
 from uavlab import checks
+from uavlab.offsets.exposure import spring_transition
 from uavlab.resilience import BASIC, Controller, basic_offset
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import Weather, dryden_parameters, dryden_spectrum
@@ -122,7 +123,7 @@ class OffsetProcess:
             keep = np.exp(-turn / 2)
             transition, noise = np.diag([keep, 0.0]), np.diag([np.sqrt(1 - keep**2), 0.0])
         else:
-            transition = np.exp(-turn) * np.array([[1 + turn, turn], [-turn, 1 - turn]])
+            transition = spring_transition(turn)
             noise = np.linalg.cholesky(np.eye(2) - transition @ transition.T)
         return np.broadcast_to(self.sigma, 3) / basic_offset(controller), transition, noise
 

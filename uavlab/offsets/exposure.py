@@ -157,9 +157,8 @@ def offset_paths(
     generator = np.random.default_rng(rng)
     if rough:
         transition, stationary = np.array([[np.exp(-turn / 2)]]), np.eye(1)
-    else:  # position and speed, in units of σ and ω_n σ
-        transition = np.exp(-turn) * np.array([[1 + turn, turn], [-turn, 1 - turn]])
-        stationary = np.eye(2)
+    else:
+        transition, stationary = spring_transition(turn), np.eye(2)
     noise = np.linalg.cholesky(stationary - transition @ transition.T)
     state = generator.standard_normal((len(stationary), count))
     offset = np.empty((steps + 1, count))
@@ -168,3 +167,8 @@ def offset_paths(
         state = transition @ state + noise @ generator.standard_normal(state.shape)
         offset[i] = state[0]
     return step * np.arange(steps + 1), sigma * offset.T
+
+
+def spring_transition(turn: float) -> np.ndarray:
+    """Offset and speed (in units of σ and ω_n σ) a time of `turn`/ω_n later, when nothing shakes: (2, 2)."""
+    return np.exp(-turn) * np.array([[1 + turn, turn], [-turn, 1 - turn]])
