@@ -123,6 +123,8 @@ def position(text: str) -> tuple[float, ...]:
 def run(options: argparse.Namespace) -> int:
     """Plan, smooth, fly, draw, write; print where the page is."""
     began = time.perf_counter()
+    if options.flights < 0:
+        raise ValueError(f"--flights must be at least 0, got {options.flights}")
     city, risk_map = load_city(options.city, options.cell)
     conditions = conditions_of(options, risk_map)
     if conditions.grounded:
@@ -233,10 +235,8 @@ def try_out(route: "Route", city: "City", conditions: Conditions, flights: int, 
     from uavlab.flight import OffsetProcess, fly, monte_carlo
     from uavlab.spline import feasibility, smooth
 
-    if flights < 0:
-        raise ValueError(f"--flights must be at least 0, got {flights}")
     if not route.reached:
-        return Trial(route.reason)
+        return Trial("there is no route")
     uav, wind = conditions.uav, conditions.wind
     try:
         curve = smooth(route, city, uav, min_clearance=conditions.clearance)

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from uavlab.flight import OffsetProcess, Wind, fly, monte_carlo
 from uavlab.flight.motion import speed_at, steps_to_goal
-from uavlab.flight.path import BANK, BRAKING, CREEP, TURN_JUMP, planned_speed, thrust_left, why_grounded
+from uavlab.flight.path import BANK, BRAKING, CREEP, TURN_JUMP, level_thrust, planned_speed, why_grounded
 from uavlab.flight.simulation import setup_of
 from uavlab.resilience import ADVANCED, Controller
 from uavlab.route import Route
@@ -71,7 +71,7 @@ def test_on_a_dense_arc_the_lateral_acceleration_is_what_bank_or_half_the_thrust
     wind = Wind((0, 8))
     arc = Route(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(300, 30.0)]))
     path = planned_speed(arc, uav, wind, 15.0)
-    held = 0.5 * thrust_left(uav, wind) / (uav.weight / GRAVITY)
+    held = 0.5 * np.subtract(*level_thrust(uav, wind)) / (uav.weight / GRAVITY)
     assert (held < GRAVITY * np.tan(BANK)) == (uav.payload > 0)
     lateral = path.at_points**2 / radius
     assert lateral.max() == pytest.approx(min(held, GRAVITY * np.tan(BANK)), rel=1e-3)
@@ -132,7 +132,7 @@ def test_wind_that_cannot_be_held_grounds_with_the_margin(uav, wind, reason):
 
 def test_the_margin_is_reserve_less_drag_and_ends_where_it_is_used_up():
     reserve = np.sqrt(15.5**2 - (WEAK.weight + rain_force(30, WEAK.rain_area)) ** 2)
-    assert thrust_left(WEAK, Wind(rain_mm_per_h=30)) == pytest.approx(reserve)
+    assert np.subtract(*level_thrust(WEAK, Wind(rain_mm_per_h=30))) == pytest.approx(reserve)
     most = np.sqrt(reserve / (0.5 * 1.225 * WEAK.drag_area))
     assert why_grounded(straight(), WEAK, Wind((0, most - 1e-6), rain_mm_per_h=30)) == ""
     assert "0.0 N short" in why_grounded(straight(), WEAK, Wind((0, most + 1e-6), rain_mm_per_h=30))

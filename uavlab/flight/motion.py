@@ -138,10 +138,7 @@ def drift_on(spring, path, space, state, dt, most, every, rng, log):
     """The same for offsets without a body: they are added to the route."""
     target_velocity = np.empty(3)
     for _ in range(most):
-        if state.counts[0] > 0:
-            advance(path, state, dt * spring.pace, target_velocity)
-        else:
-            advance(path, state, 0.0, target_velocity)
+        advance(path, state, dt * spring.pace if state.counts[0] > 0 else 0.0, target_velocity)
         for a in range(3):
             one, two = rng.standard_normal(), rng.standard_normal()
             x, v = state.lags[a, 0], state.lags[a, 1]

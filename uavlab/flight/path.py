@@ -6,6 +6,7 @@ import numpy as np
 
 from uavlab.flight.disturbance import Wind
 from uavlab.route import Route
+from uavlab.spline.curve import BANK
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import rain_force, reachable_ground_speed, wind_drag
 
@@ -15,7 +16,6 @@ TURN_JUMP = 1.0
 BRAKING = 2.0
 """Along the route [m/s²]."""
 
-BANK = np.radians(30.0)
 CREEP = 0.1
 """With what a flight begins and ends [m/s]."""
 
@@ -44,8 +44,8 @@ def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
     """
     points, distance, direction = geometry(route)
     mass = uav.weight / GRAVITY
-    spare = thrust_left(uav, wind)
-    agility = min(GRAVITY * np.tan(BANK), 0.5 * spare / mass)
+    held, pushed = level_thrust(uav, wind)
+    agility = min(GRAVITY * np.tan(BANK), 0.5 * (held - pushed) / mass)
     reachable = reachable_ground_speed(uav.top_speed, wind.mean, direction)
     on_legs = np.minimum(speed, reachable)
     at_points = np.full(len(points), CREEP)
@@ -69,28 +69,24 @@ def within_braking(at_points: np.ndarray, distance: np.ndarray, braking: float) 
 
 def geometry(route: Route) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Points, distances and directions of a route, without legs of no length."""
-    keep = np.concatenate([[True], route.leg_lengths > 0])
-    points = np.ascontiguousarray(route.points[keep])
-    legs = np.diff(points, axis=0)
-    length = np.linalg.norm(legs, axis=1)
-    return points, np.concatenate([[0.0], np.cumsum(length)]), legs / length[:, None]
+    flown = Route(route.points[np.concatenate([[True], route.leg_lengths > 0])])
+    return flown.points, flown.distance, np.diff(flown.points, axis=0) / flown.leg_lengths[:, None]
 
 
-def thrust_left(uav: UAV, wind: Wind) -> float:
-    """Level thrust that is left while hovering in the mean wind and rain [N]; negative: it is blown away."""
-    reserve = float(uav.horizontal_reserve(rain_force(wind.rain_mm_per_h, uav.rain_area)))
+def level_thrust(uav: UAV, wind: Wind) -> tuple[float, float]:
+    """What rotors can pull sideways beside weight and rain, and what the mean wind pushes while hovering [N]."""
+    held = float(uav.horizontal_reserve(rain_force(wind.rain_mm_per_h, uav.rain_area)))
     drag = wind_drag(wind.mean, (0.0, 0.0, 0.0), uav.drag_area, air_density=wind.air_density)
-    return reserve - float(np.linalg.norm(drag))
+    return held, float(np.linalg.norm(drag))
 
 
 def why_grounded(route: Route, uav: UAV, wind: Wind) -> str:
     """Why a UAV can't fly a route in a wind; empty if it can."""
-    left = thrust_left(uav, wind)
-    if left <= 0:
-        reserve = float(uav.horizontal_reserve(rain_force(wind.rain_mm_per_h, uav.rain_area)))
+    held, pushed = level_thrust(uav, wind)
+    if pushed >= held:
         return (
-            f"a wind of {wind.speed:.1f} m/s pushes with {reserve - left:.1f} N, the thrust left over holds "
-            f"{reserve:.1f} N: {-left:.1f} N short"
+            f"a wind of {wind.speed:.1f} m/s pushes with {pushed:.1f} N, the thrust left over holds {held:.1f} N: "
+            f"{pushed - held:.1f} N short"
         )
     direction = geometry(route)[2]
     along = direction @ wind.mean
@@ -98,7 +94,7 @@ def why_grounded(route: Route, uav: UAV, wind: Wind) -> str:
     worst = int(np.argmax(across))
     if across[worst] >= uav.top_speed:
         return f"crosswind of {across[worst]:.1f} m/s on leg {worst}, the top speed is {uav.top_speed:g} m/s"
-    slowest = np.sqrt(uav.top_speed**2 - across**2) + along
+    slowest = reachable_ground_speed(uav.top_speed, wind.mean, direction)
     worst = int(np.argmin(slowest))
     if slowest[worst] <= CREEP:
         return f"head wind of {-along[worst]:.1f} m/s on leg {worst}, the top speed is {uav.top_speed:g} m/s"

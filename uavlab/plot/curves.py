@@ -14,7 +14,8 @@ from uavlab.plot.charts import finite_or_nan
 from uavlab.plot.style import DPI, ROUTE_COLORS, check_drawn, draw_map, finished, label_of, level_of, route_colors
 from uavlab.route import Route
 from uavlab.spline import Curve
-from uavlab.spline.limits import BANK, MAX_PITCH
+from uavlab.spline.curve import BANK, CONTACT
+from uavlab.spline.limits import MAX_PITCH
 from uavlab.vehicle import GRAVITY
 
 
@@ -106,7 +107,7 @@ def corner(
             axes.plot(*route.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2, label=label_of(route))
         axes.add_collection(PolyCollection(list(swept(curve, diameter)), facecolor=ROUTE_COLORS[1], alpha=0.35))
         axes.plot(*curve.points[:, :2].T, color=ROUTE_COLORS[1], label=f"curve and its body of {diameter:g} m")
-        touches = np.append(curve.least_distances(city, diameter) < diameter / 2, False)
+        touches = np.append(curve.least_distances(city, diameter) < (1 - CONTACT) * diameter / 2, False)
         axes.plot(*np.where(touches[:, None], curve.points, np.nan)[:, :2].T, color=ROUTE_COLORS[0], linewidth=4,
                   label="touches an obstacle")  # fmt: skip
         axes.plot(*curve.control[:, :2].T, "o", color=ROUTE_COLORS[2], markersize=4, label="control points")

@@ -19,6 +19,9 @@ AT_REST = 1e-9
 CORNER = 1e-4
 """Where it stands still and its direction changes by more than this [rad], it has a corner; less is rounding."""
 
+BANK = np.radians(30.0)
+"""What a turn may take, as is usual for multirotors [rad]."""
+
 UNRESOLVED = 0.5
 """A change of direction between two points [rad] in which the curvature of neither may be the greatest."""
 
@@ -48,15 +51,19 @@ def curvature(velocity: npt.ArrayLike, acceleration: npt.ArrayLike) -> np.ndarra
         If they are not finite vectors with two or three components.
     """
     first, second = checks.vectors(velocity=velocity, acceleration=acceleration)
-    speed = np.linalg.norm(first, axis=-1)
+    return np.linalg.norm(curvature_vector(first, second), axis=-1)
+
+
+def curvature_vector(velocity: np.ndarray, acceleration: np.ndarray) -> np.ndarray:
+    """What of r″ is across r′, over |r′|²: as long as κ, towards the inside of the turn; NaN where r′ stands still."""
+    speed = np.linalg.norm(velocity, axis=-1, keepdims=True)
     moving = speed > AT_REST
-    tangent = first / np.where(moving, speed, 1.0)[..., None]
-    across = second - (second * tangent).sum(axis=-1, keepdims=True) * tangent
-    bend = np.linalg.norm(across, axis=-1) / np.where(moving, speed, 1.0) ** 2
-    return np.where(moving, bend, np.nan)
+    tangent = velocity / np.where(moving, speed, 1.0)
+    across = acceleration - (acceleration * tangent).sum(axis=-1, keepdims=True) * tangent
+    return np.where(moving, across / np.where(moving, speed, 1.0) ** 2, np.nan)
 
 
-def allowed_speed(curvature: npt.ArrayLike, bank: float = np.radians(30.0)) -> np.ndarray:
+def allowed_speed(curvature: npt.ArrayLike, bank: float = BANK) -> np.ndarray:
     """Greatest speed √(g·tan(bank)/κ) at which a bank angle holds a level turn.
 
     Parameters
@@ -165,7 +172,7 @@ class Curve:
     @cached_property
     def distance(self) -> np.ndarray:
         """Distance flown to each point, (P,) [m]."""
-        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))])
+        return self.route().distance
 
     @property
     def length(self) -> float:
@@ -173,16 +180,25 @@ class Curve:
         return float(self.distance[-1])
 
     @cached_property
+    def velocity(self) -> np.ndarray:
+        """First derivative by the parameter at each point, (P, 3) [m]."""
+        return self.at(self.parameter, 1)
+
+    @cached_property
+    def acceleration(self) -> np.ndarray:
+        """Second derivative by the parameter at each point, (P, 3) [m]."""
+        return self.at(self.parameter, 2)
+
+    @cached_property
     def tangent(self) -> np.ndarray:
         """Unit vectors along the curve at each point, (P, 3); where it stands still, as it goes on from there."""
-        velocity = self.at(self.parameter, 1)
-        speed = np.linalg.norm(velocity, axis=1)
+        speed = np.linalg.norm(self.velocity, axis=1)
         moving = np.flatnonzero(speed > AT_REST)
         if len(moving) == 0:
-            return np.zeros_like(velocity)
+            return np.zeros_like(self.velocity)
         following = np.searchsorted(moving, np.arange(len(speed)))
         there = moving[np.minimum(following, len(moving) - 1)]
-        return velocity[there] / speed[there, None]
+        return self.velocity[there] / speed[there, None]
 
     @cached_property
     def bend(self) -> np.ndarray:
@@ -191,17 +207,15 @@ class Curve:
         A corner is where the curve stands still and goes on in another direction, as at a point that stands three
         times. A turn that is too tight for `step` to resolve counts as even between the two points.
         """
-        velocity, second = self.at(self.parameter, 1), self.at(self.parameter, 2)
-        speed = np.linalg.norm(velocity, axis=1)
-        moving = speed > AT_REST
-        across = second - (second * self.tangent).sum(axis=1, keepdims=True) * self.tangent
-        bend = np.where(moving[:, None], across, 0.0) / np.where(moving, speed, 1.0)[:, None] ** 2
+        bend = curvature_vector(self.velocity, self.acceleration)
+        at_rest = np.isnan(bend).any(axis=1)
+        bend = np.where(at_rest[:, None], 0.0, bend)
         before = np.concatenate([self.tangent[:1], self.tangent[:-1]])
         turn = self.tangent - before
         size = np.linalg.norm(turn, axis=1)
         even = turn / np.maximum(np.diff(self.distance, prepend=-1.0), 1e-9)[:, None]
         bend = np.where((size > UNRESOLVED)[:, None], even, bend)
-        corner = ~moving & (size > CORNER)
+        corner = at_rest & (size > CORNER)
         inwards = np.where(np.abs(turn) > CORNER / 2, np.copysign(np.inf, turn), 0.0)
         return np.where(corner[:, None], inwards, bend)
 
@@ -223,7 +237,7 @@ class Curve:
     @cached_property
     def sagitta(self) -> np.ndarray:
         """How far the curve can be from the straight lines between its points, (P − 1,) [m]: max|r″|·Δt²/8."""
-        second = np.linalg.norm(self.at(self.parameter, 2), axis=1)
+        second = np.linalg.norm(self.acceleration, axis=1)
         return np.maximum(second[:-1], second[1:]) * np.diff(self.parameter) ** 2 / 8  # r″ is linear in between
 
     def least_distances(self, city: City, exact_within: float | None = None) -> np.ndarray:

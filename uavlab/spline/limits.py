@@ -12,11 +12,10 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.spline.curve import CONTACT, Curve, checked_bank
+from uavlab.spline.curve import BANK, CONTACT, Curve, checked_bank
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import wind_drag
 
-BANK = np.radians(30.0)
 MAX_PITCH = np.pi / 3
 """θ_max of RISK-ACO; PSO-BAS asks for π/4."""
 
