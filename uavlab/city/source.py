@@ -1,0 +1,108 @@
+"""What a reader made of a file: what it took, mended, derived, assumed and left out, and why.
+
+A city that was read is only as good as its file. What the reader had to decide stands here, in words and numbers, with
+the names of the first few things that it concerns; a warning says the part that one must know before one flies.
+"""
+
+import html
+import warnings
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from uavlab import checks
+
+KINDS = ("taken", "mended", "derived", "assumed", "left out")
+"""In the order in which they are told; the last two are doubts."""
+
+DOUBTS = ("assumed", "left out")
+
+FIRST = 3
+"""Of so many things the names are kept."""
+
+
+class Entry(NamedTuple):
+    """One thing that a reader did, and how often."""
+
+    kind: str
+    """One of `KINDS`."""
+    what: str
+    """Such as "Building" or "height from building:levels × 3 m"."""
+    count: int
+    first: tuple[str, ...]
+    """Names of the first few that it concerns."""
+
+    def __str__(self) -> str:
+        named = f" ({', '.join(self.first)}{', …' if self.count > len(self.first) else ''})" if self.first else ""
+        return f"{self.kind}: {self.count:,} × {self.what}{named}" if self.count else f"{self.kind}: {self.what}"
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a city comes from, and what became of what stood there.
+
+    Attributes
+    ----------
+    name : str
+        Of the file.
+    format : str
+    entries : tuple of Entry
+        In the order of `KINDS`.
+    """
+
+    name: str
+    format: str
+    entries: tuple[Entry, ...] = ()
+
+    def of(self, kind: str) -> tuple[Entry, ...]:
+        """The entries of one kind, see `KINDS`."""
+        checks.one_of("kind", kind, KINDS)
+        return tuple(entry for entry in self.entries if entry.kind == kind)
+
+    def count(self, kind: str, what: str = "") -> int:
+        """How many things entries of a kind concern; with `what`, those that have this in their words."""
+        return sum(entry.count for entry in self.of(kind) if what in entry.what)
+
+    @property
+    def doubts(self) -> tuple[Entry, ...]:
+        """What was assumed or left out."""
+        return tuple(entry for entry in self.entries if entry.kind in DOUBTS)
+
+    def __str__(self) -> str:
+        return "\n".join([f"{self.name} ({self.format})", *(f"  {entry}" for entry in self.entries)])
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{entry.kind}</td><td>{html.escape(str(entry).split(': ', 1)[1])}</td></tr>"
+            for entry in self.entries
+        )
+        return f"<table><caption>{html.escape(self.name)} ({self.format})</caption>{rows}</table>"
+
+    def warn(self, stacklevel: int = 3) -> None:
+        """One warning with all that was assumed or left out; none where nothing was."""
+        if self.doubts:
+            said = "; ".join(map(str, self.doubts))
+            warnings.warn(f"{self.name}: {said}. city.source tells all", stacklevel=stacklevel)
+
+
+class Notes:
+    """Collects what a reader does, one thing after the other."""
+
+    def __init__(self) -> None:
+        self.counts: dict[tuple[str, str], int] = defaultdict(int)
+        self.first: dict[tuple[str, str], list[str]] = defaultdict(list)
+
+    def add(self, kind: str, what: str, name: str = "", count: int = 1) -> None:
+        """Note a thing, with its name if it has one; `count` 0 for what holds for the file as a whole."""
+        entry = checks.one_of("kind", kind, KINDS), what
+        self.counts[entry] += count
+        if name and len(self.first[entry]) < FIRST:
+            self.first[entry].append(name)
+
+    def source(self, name: str, file_format: str) -> Source:
+        """All notes as a report, in the order of `KINDS`, and within a kind as they came."""
+        keys = sorted(self.counts, key=lambda entry: KINDS.index(entry[0]))
+        entries = [Entry(*key, self.counts[key], tuple(self.first[key])) for key in keys]
+        return Source(name, file_format, tuple(entries))
