@@ -17,6 +17,15 @@ def numbers(name: str, value: npt.ArrayLike) -> np.ndarray:
         raise ValueError(f"{name} must be a number or an array of numbers: {wrong}") from wrong
 
 
+def frozen(values: npt.ArrayLike, kind: npt.DTypeLike = float) -> np.ndarray:
+    """The values as an array that can't be written to: a copy, unless nobody else could write to it either."""
+    array = np.asarray(values, dtype=kind)
+    if array.flags.writeable or not array.flags.owndata or not array.flags.c_contiguous:
+        array = np.array(array, order="C")
+        array.setflags(write=False)
+    return array
+
+
 def number(name: str, value: npt.ArrayLike) -> None:
     shape = numbers(name, value).shape
     if shape:

@@ -30,6 +30,8 @@ class Route:
         What the planner minimised, in the planner's own unit; infinite when it didn't arrive.
     info : dict
         What the planner noted: `expanded`, `elapsed` [s], histories when asked for.
+    takeoff, landing : int
+        How many of its first and last legs are vertical take-off and landing, below the planner's `min_height`.
 
     Raises
     ------
@@ -43,6 +45,8 @@ class Route:
     reason: str = ""
     cost: float = np.nan
     info: dict[str, Any] = field(default_factory=dict)
+    takeoff: int = 0
+    landing: int = 0
 
     def __post_init__(self) -> None:
         points = np.array(self.points, dtype=float)
@@ -56,6 +60,11 @@ class Route:
         if not self.reached:
             return f"<Route by {self.planner}: not reached, {self.reason}>"
         return f"<Route by {self.planner}: {self.length:.1f} m, {len(self.points)} waypoints>"
+
+    @property
+    def en_route(self) -> "Route":
+        """The route between take-off and landing; what planners promise of heights and clearance holds there."""
+        return replace(self, points=self.points[self.takeoff : len(self.points) - self.landing], takeoff=0, landing=0)
 
     @cached_property
     def leg_lengths(self) -> np.ndarray:

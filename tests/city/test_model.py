@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import linprog
+from scipy.spatial import ConvexHull
 from scipy.stats import chisquare
 
 from uavlab.city import Building, City
+from uavlab.city.rasterise import TOUCH
 
 BOX = Building.prism([(2, 2), (5, 2), (5, 4), (2, 4)], 3, name="box")
 EMPTY = np.zeros((4, 5, 6), bool)
@@ -295,18 +298,20 @@ def test_height_above_a_box_is_exact_where_its_roof_cuts_through_voxels():
     under = np.zeros(city.shape, bool)
     under[3:6, 3:5] = True  # the map begins at (−4, −4)
     assert above[~under] == pytest.approx(height[~under])
-    assert above[under] == pytest.approx(np.where(height < 7.3, 0, height - 7.3)[under])
+    assert above[under] == pytest.approx(np.where(height < 8, 0, height - 7.3)[under])
     assert above[3, 3, 4] == pytest.approx(9 - 7.3)
 
 
 @pytest.mark.parametrize("cell", [0.5, 1.0, 1.7])
-def test_height_above_a_hip_roof_is_exact(cell):
+def test_height_above_a_hip_roof_is_that_above_its_highest_point_in_the_column(cell):
     city = City.from_buildings([HOUSE], cell=cell, origin=(0, 0, 0), size=(24, 16, 20))
     x, y, z = np.moveaxis(city.center_of(np.moveaxis(np.indices(city.shape), 0, -1)), -1, 0)
+    half = cell / 2  # the roof rises towards its ridge, so it is highest at the point of the column nearest to that
+    x, y = x + np.clip(12 - x, -half, half), y + np.clip(8 - y, -half, half)
     under = (x > 2) & (x < 22) & (y > 3) & (y < 13)
     roof = np.where(under, hip_roof(x, y), 0.0)
-    expected = np.where(z > roof, z - roof, 0.0)
-    assert city.height_above_surface == pytest.approx(expected, abs=1e-9)
+    expected = np.where(city.occupied, 0.0, z - roof)
+    assert city.height_above_surface == pytest.approx(expected, abs=1e-5)
 
 
 def test_height_below_a_floating_building_is_that_above_what_stands_there():
@@ -315,8 +320,8 @@ def test_height_below_a_floating_building_is_that_above_what_stands_there():
     for buildings in ([shed, bridge], [bridge, shed]):
         city = City.from_buildings(buildings, origin=(0, 0, 0), size=(10, 4, 13))
         above = city.height_above_surface
-        assert above[2, 2] == pytest.approx([0, 0, 0, 0, 1, 2, 0, 0, 0, 0.3, 1.3, 2.3, 3.3])
-        assert above[6, 2] == pytest.approx([0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 0, 0, 0, 0.3, 1.3, 2.3, 3.3])
+        assert above[2, 2] == pytest.approx([0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 1.3, 2.3, 3.3])
+        assert above[6, 2] == pytest.approx([0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 0, 0, 0, 0, 1.3, 2.3, 3.3])
         assert above[9, 2] == pytest.approx(np.arange(13) + 0.5)
 
 
@@ -340,20 +345,24 @@ def test_height_above_any_buildings_is_found_by_looking_down(seed):
     outline = np.array([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
     ell = Building.prism(origin[:2] + rng.uniform(0, 5, 2) + outline, origin[2] + 8.5, bottom=origin[2] - 1)
     city = City.from_buildings([*bodies, ell], cell=1.3, origin=origin, size=(12, 11, 12))
-    step = 0.004
+    pieces = [ConvexHull(piece).equations for building in city.buildings for piece in building.pieces]
     for i, j in np.ndindex(city.shape[:2]):
-        x, y, _ = city.center_of((i, j, 0))
-        z = np.arange(origin[2], city.bounds[1, 2], step)
-        points = np.column_stack([np.full_like(z, x), np.full_like(z, y), z])
-        solid = np.any([building.contains(points) for building in city.buildings], axis=0)
+        low, high = city.center_of((i, j, 0)) - 0.65, city.center_of((i, j, 0)) + 0.65
+        tops = [highest_point(piece, low[:2] + TOUCH, high[:2] - TOUCH) for piece in pieces]
         for k in range(city.shape[2]):
             level = city.center_of((i, j, k))[2]
             if city.occupied[i, j, k]:
                 assert city.height_above_surface[i, j, k] == 0
             else:
-                below = z[solid & (z < level)]
-                surface = below.max() if len(below) else origin[2]
-                assert city.height_above_surface[i, j, k] == pytest.approx(level - surface, abs=2 * step)
+                surface = max(top for top in [origin[2], *tops] if top < level)
+                assert city.height_above_surface[i, j, k] == pytest.approx(level - surface, abs=1e-6)
+
+
+def highest_point(equations, low, high):
+    """Highest z of a convex piece over a rectangle, by linear programming."""
+    bounds = [*zip(low, high, strict=True), (None, None)]
+    found = linprog([0, 0, -1], A_ub=equations[:, :3], b_ub=-equations[:, 3], bounds=bounds)
+    return found.x[2] if found.status == 0 else -np.inf
 
 
 @pytest.mark.parametrize("shift", [(1e4, -3e4, 250.0), (-0.37, 12.1, -80.0)])
@@ -482,14 +491,14 @@ def test_occupied_is_where_a_building_contains_the_centre(seed):
     buildings = [Building.hull(rng.uniform(-4, 14, 3) + rng.uniform(-4, 4, (8, 3))) for _ in range(4)]
     outline = np.array([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
     ell = Building.prism(outline + rng.uniform(0, 5, 2), 8.5)
-    city = City.from_buildings([*buildings, ell], cell=0.7, origin=(-1, 0, 1), size=(12, 11, 10))
+    city = City.from_buildings([*buildings, ell], cell=0.7, origin=(-1, 0, 1), size=(12, 11, 10), voxels="centres")
     centers = city.center_of(np.moveaxis(np.indices(city.shape), 0, -1))
     assert np.array_equal(city.occupied, np.any([b.contains(centers) for b in city.buildings], axis=0))
 
 
 def test_a_voxel_whose_centre_lies_on_a_face_is_occupied():
     building = Building.prism([(1.5, 2.5), (3.5, 2.5), (3.5, 4.5), (1.5, 4.5)], 3.5, bottom=0.5)
-    occupied = City.from_buildings([building], origin=(0, 0, 0), size=(8, 8, 8)).occupied
+    occupied = City.from_buildings([building], origin=(0, 0, 0), size=(8, 8, 8), voxels="centres").occupied
     assert occupied.sum() == 3 * 3 * 4
     assert occupied[1:4, 2:5, 0:4].all()
 
@@ -503,7 +512,7 @@ def test_a_city_keeps_what_it_was_given():
     city = City([[[0, 1]]], cell=2, name="one", reference=(4.36, 52.0))
     assert city.occupied.dtype == bool
     assert city.occupied.tolist() == [[[False, True]]]
-    assert (city.cell, city.name, city.reference, city.buildings) == (2.0, "one", (4.36, 52.0), ())
+    assert (city.cell, city.name, city.reference, city.buildings) == (2.0, "one", (4.36, 52.0, 0.0), ())
 
 
 @pytest.mark.parametrize(
@@ -528,7 +537,7 @@ def test_a_city_keeps_what_it_was_given():
         (lambda: City.from_buildings([BOX], origin=(0, 0, 0), size=3), "size must be three positive extents"),
         (
             lambda: City.from_buildings([BOX], cell=0.01, origin=(0, 0, 0), size=(10, 10, 10)),
-            "cell=0.01 m gives 1000 × 1000 × 1000 voxels .* more than 500,000,000: use a cell of at least 0.013 m",
+            "cell=0.01 m gives 1000 × 1000 × 1000 voxels .* more than 500,000,000: use a cell of at least 0.0127 m",
         ),
         (lambda: City(EMPTY).random_pairs(0, 1), "count must be at least 1, got 0"),
         (lambda: City(EMPTY).random_pairs(1, 1, min_clearance=-1), "min_clearance must be .* at least 0, got -1"),
@@ -570,4 +579,5 @@ def test_the_cell_that_a_refusal_suggests_is_accepted_by_the_limit():
     with pytest.raises(ValueError, match="use a cell of at least") as refusal:
         City.from_buildings([], cell=0.1, origin=(0, 0, 0), size=(1000, 1000, 100))
     cell = float(re.search(r"at least ([\d.]+) m", str(refusal.value))[1])
+    assert np.prod(np.ceil(np.array([1000, 1000, 100]) / cell)) <= 500e6
     assert 1000 * 1000 * 100 / cell**3 == pytest.approx(500e6, rel=0.05)

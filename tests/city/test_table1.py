@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from uavlab.city import City, table1_buildings, table1_city
 
@@ -21,7 +22,7 @@ def test_buildings_come_in_the_order_of_the_paper():
 
 @pytest.mark.parametrize("building", table1_buildings(), ids=VOXELS)
 def test_voxels_of_each_building(building):
-    alone = City.from_buildings([building], origin=(0, 0, 0), size=(100, 100, 100))
+    alone = City.from_buildings([building], origin=(0, 0, 0), size=(100, 100, 100), voxels="centres")
     assert alone.occupied.sum() == VOXELS[building.name]
 
 
@@ -47,7 +48,7 @@ def test_roofs_notch_and_air_below_the_floating_building(table1, point, occupied
 @pytest.mark.parametrize("cell", [0.8, 2.0])
 def test_other_resolutions_hold_the_same_volume_within_half_a_cell_of_the_surface(cell):
     city = table1_city(cell)
-    surface = sum(hull.area for building in city.buildings for hull in building.hulls)
+    surface = sum(ConvexHull(piece).area for building in city.buildings for piece in building.pieces)
     assert city.shape == (round(100 / cell),) * 3
     assert abs(city.occupied.sum() * cell**3 - 144_858) < 0.5 * (cell + 1) * surface
 

@@ -8,14 +8,35 @@ courtyard) is a union of pieces. Footprints of any shape are cut into triangles.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import shapely
 from scipy.spatial import ConvexHull, QhullError
 
+from uavlab import checks
+
 FACE_TOLERANCE = 1e-9
 """How far outside a face [m] a point still counts as inside: rounding, not thickness."""
+
+
+class Hull(NamedTuple):
+    """The surface of a convex piece, as Qhull gives it."""
+
+    points: np.ndarray
+    """(M, 3) corners [m]."""
+    simplices: np.ndarray
+    """(T, 3) of them for each triangle."""
+    equations: np.ndarray
+    """(T, 4) a, b, c, d of each triangle's plane: a·x + b·y + c·z + d is how far a point lies outside [m]."""
+    neighbors: np.ndarray
+    """(T, 3) triangles opposite of the corners."""
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """(T, 3 corners, 3) [m]"""
+        return self.points[self.simplices]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +63,7 @@ class Building:
     color: str = "lightsteelblue"
 
     def __post_init__(self) -> None:
-        pieces = tuple(np.asarray(piece, dtype=float) for piece in self.pieces)
+        pieces = tuple(checks.frozen(piece) for piece in self.pieces)
         if not pieces:
             raise ValueError(f"pieces of {self.name!r} is empty: give at least one array of corners")
         for piece in pieces:
@@ -122,14 +143,17 @@ class Building:
         return cls(tuple(extrude(part, bottom, top) for part in convex_parts(polygon)), name, color)
 
     @cached_property
-    def hulls(self) -> tuple[ConvexHull, ...]:
-        """The convex hull of each piece."""
+    def hulls(self) -> tuple[Hull, ...]:
+        """The surface of each piece."""
         try:
-            return tuple(ConvexHull(piece) for piece in self.pieces)
+            found = [ConvexHull(piece) for piece in self.pieces]
         except (QhullError, ValueError):
             raise ValueError(
                 f"pieces of {self.name!r} must each span a volume: at least four corners, not all in one plane"
             ) from None
+        return tuple(
+            Hull(piece, h.simplices, h.equations, h.neighbors) for piece, h in zip(self.pieces, found, strict=True)
+        )
 
     @cached_property
     def bounds(self) -> np.ndarray:
@@ -150,7 +174,7 @@ class Building:
         """Surface triangles of all pieces, (T, 3 corners, 3) [m], seen counter-clockwise from outside."""
         surfaces = []
         for hull in self.hulls:
-            corners = hull.points[hull.simplices]
+            corners = hull.triangles
             normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
             inward = np.einsum("ij,ij->i", normals, hull.equations[:, :3]) < 0
             corners[inward] = corners[inward][:, ::-1]
@@ -162,7 +186,7 @@ class Building:
         return np.concatenate([crease_edges(hull) for hull in self.hulls])
 
 
-def crease_edges(hull: ConvexHull) -> np.ndarray:
+def crease_edges(hull: Hull) -> np.ndarray:
     """Ends (2E, 3) of the edges between faces of a convex hull that don't lie in one plane."""
     ends = []
     for face, neighbours in enumerate(hull.neighbors):

@@ -1,7 +1,7 @@
 """What flat polygons do in columns of voxels: how low and how high they reach in each, and how much of it they cover.
 
-A column is a square in plan. A convex polygon is cut to it edge by edge (Sutherland and Hodgman 1974), first to the strip
-of columns that share an x, then to each square of the strip. The surface of a convex solid, cut to a column, has
+A column is a square in plan. A convex polygon is cut to it edge by edge (Sutherland and Hodgman 1974), first to the
+strip of columns that share an x, then to each square of the strip. The surface of a convex solid, cut to a column, has
 the lowest and the highest point that the solid has there; so it touches the voxels in between and no others. The same
 cut gives terrain its highest point in a column, and shares out the pixels of a raster without loss.
 
@@ -62,13 +62,15 @@ def widen(polygons, inset, low, high):
     corners = polygons.shape[1]
     strip, square, spare = np.empty((corners + 8, 3)), np.empty((corners + 8, 3)), np.empty((corners + 8, 3))
     for polygon in polygons:
-        first_i, last_i = columns_between(*extent(polygon, corners, X), inset, low.shape[0])
+        west, east = extent(polygon, corners, X)
+        first_i, last_i = columns_between(west, east, inset, low.shape[0])
         for i in range(first_i, last_i):
             count = cut(polygon, corners, X, i + inset, True, spare)
             count = cut(spare, count, X, i + 1 - inset, False, strip)
             if count == 0:
                 continue
-            first_j, last_j = columns_between(*extent(strip, count, Y), inset, low.shape[1])
+            south, north = extent(strip, count, Y)
+            first_j, last_j = columns_between(south, north, inset, low.shape[1])
             for j in range(first_j, last_j):
                 left = cut(strip, count, Y, j + inset, True, spare)
                 left = cut(spare, left, Y, j + 1 - inset, False, square)
@@ -83,13 +85,15 @@ def share_out(polygons, values, sums, areas):
     corners = polygons.shape[1]
     strip, square, spare = np.empty((corners + 8, 2)), np.empty((corners + 8, 2)), np.empty((corners + 8, 2))
     for t in range(len(polygons)):
-        first_i, last_i = columns_between(*extent(polygons[t], corners, X), 0.0, sums.shape[0])
+        west, east = extent(polygons[t], corners, X)
+        first_i, last_i = columns_between(west, east, 0.0, sums.shape[0])
         for i in range(first_i, last_i):
             count = cut(polygons[t], corners, X, float(i), True, spare)
             count = cut(spare, count, X, i + 1.0, False, strip)
             if count == 0:
                 continue
-            first_j, last_j = columns_between(*extent(strip, count, Y), 0.0, sums.shape[1])
+            south, north = extent(strip, count, Y)
+            first_j, last_j = columns_between(south, north, 0.0, sums.shape[1])
             for j in range(first_j, last_j):
                 left = cut(strip, count, Y, float(j), True, spare)
                 left = cut(spare, left, Y, j + 1.0, False, square)

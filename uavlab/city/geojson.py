@@ -18,6 +18,7 @@ import shapely
 from uavlab.city.buildings import Building, convex_parts, extrude, footprint_polygon
 from uavlab.city.documents import count, lowest_corner, read_json
 from uavlab.city.model import City
+from uavlab.city.place import Place
 
 EQUATORIAL_RADIUS, FLATTENING = 6_378_137.0, 1 / 298.257223563
 """The ellipsoid WGS84 [m, 1]."""
@@ -97,7 +98,7 @@ def read_geojson(
         origin=(low[0] - margin, low[1] - margin, 0.0),
         margin=margin,
         name=path.name.split(".")[0],
-        reference=(float(corner[0]), float(corner[1])) if degrees else None,
+        reference=Place(float(corner[0]), float(corner[1])) if degrees else None,
     )
 
 

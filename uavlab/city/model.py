@@ -1,8 +1,8 @@
 """The city as planners see it: a box of voxels, free or occupied, and the distance to the nearest wall.
 
 A voxel (i, j, k) covers `origin + cell·[i, i+1)` on each axis, its centre is the node that planners visit. A voxel is
-occupied when its centre lies in a building. Outside of the box nothing may fly; the border itself is no obstacle,
-so clearance is measured to buildings alone, neither to the border nor to the ground.
+occupied when a building or the ground reaches into it, so that what is free is free. Outside of the box nothing may
+fly; the border itself is no obstacle. A city without `ground` has the papers' open floor, which is none either.
 """
 
 from collections.abc import Sequence
@@ -12,23 +12,41 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import ConvexHull
 
-from uavlab.city.buildings import FACE_TOLERANCE, Building
+from uavlab import checks
+from uavlab.city.buildings import Building
+from uavlab.city.place import Place
+from uavlab.city.rasterise import (
+    RULES,
+    bilinear,
+    mark_ground,
+    raise_surface,
+    range_of_ground,
+    rasterise,
+    touches,
+)
+from uavlab.city.source import Source
+from uavlab.city.terrain import Terrain, ground_and_top
 from uavlab.city.voxels import distances_to_obstacle, squared_clearance, voxels_on_segment
+from uavlab.city.zones import NoFlyZone, checked_zones
 
 MOST_VOXELS = 500_000_000
 """More than this is refused: half a gigabyte for the occupancy alone."""
 
+TINY = 1e-300
+"""A clearance below this is that of an obstacle."""
+
 
 @dataclass(frozen=True, eq=False)
 class City:
-    """An occupancy grid and the buildings that it came from.
+    """An occupancy grid and the buildings and the ground that it came from.
+
+    Its arrays can't be written to, and those that it is given are copied.
 
     Attributes
     ----------
     occupied : (nx, ny, nz) bool array
-        True where the centre of the voxel lies in a building.
+        True where a building or the ground is; what lies below `ground` is added.
     cell : float
         Edge of a voxel [m], above 0.
     origin : (3,) float array
@@ -36,13 +54,21 @@ class City:
     buildings : tuple of Building
         For drawing and for messages; may be empty, as after `read_voxels`.
     name : str
-    reference : (longitude, latitude) or None
-        Where on Earth x = y = 0 lies [degrees], when a reader knows.
+    reference : Place, or (longitude, latitude[, height]), or None
+        Where on Earth x = y = z = 0 lies [degrees, m], when a reader knows.
+    ground : (nx, ny) float array, or None
+        Height of the terrain at the centre of each column [m], solid below. None: the bottom of the map is the
+        ground, and no obstacle.
+    no_fly : tuple of NoFlyZone
+        Closed for planners, no obstacles.
+    source : Source, or None
+        What a reader made of the file.
 
     Raises
     ------
     ValueError
-        If `occupied` is not a three-dimensional array with voxels in it, or `cell` is not above 0.
+        If `occupied` is not a three-dimensional array with voxels in it, `cell` is not above 0, or `ground` doesn't
+        fit.
     """
 
     occupied: np.ndarray
@@ -50,16 +76,37 @@ class City:
     origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
     buildings: tuple[Building, ...] = ()
     name: str = "city"
-    reference: tuple[float, float] | None = None
+    reference: Place | None = None
+    ground: np.ndarray | None = None
+    no_fly: tuple[NoFlyZone, ...] = ()
+    source: Source | None = None
 
     def __post_init__(self) -> None:
-        occupied = np.ascontiguousarray(self.occupied, dtype=bool)
+        occupied = checks.frozen(self.occupied, bool)
         if occupied.ndim != 3 or occupied.size == 0:
             raise ValueError(f"occupied must be an array (nx, ny, nz) with at least one voxel, got {occupied.shape}")
-        object.__setattr__(self, "occupied", occupied)
         object.__setattr__(self, "origin", checked_origin(self.origin))
         object.__setattr__(self, "cell", checked_cell(self.cell))
         object.__setattr__(self, "buildings", tuple(self.buildings))
+        object.__setattr__(self, "no_fly", checked_zones(self.no_fly))
+        if self.reference is not None:
+            object.__setattr__(self, "reference", Place(*self.reference))
+        if self.ground is not None:
+            ground = checks.frozen(checks.numbers("ground", self.ground))
+            if ground.shape != occupied.shape[:2] or not np.isfinite(ground).all():
+                raise ValueError(
+                    f"ground must have one finite height for each column {occupied.shape[:2]}, got shape "
+                    f"{ground.shape} with {np.count_nonzero(~np.isfinite(ground))} that are NaN or infinite"
+                )
+            object.__setattr__(self, "ground", ground)
+            solid = occupied.copy()
+            mark_ground(solid, self.range_of_ground[1], self.cell, self.origin[2])
+            occupied = locked(solid)
+        object.__setattr__(self, "occupied", occupied)
+
+    def __repr__(self) -> str:
+        shape = " × ".join(map(str, self.occupied.shape))
+        return f"<City {self.name}: {shape} voxels of {self.cell:g} m, {len(self.buildings)} buildings>"
 
     @classmethod
     def from_buildings(
@@ -71,9 +118,13 @@ class City:
         size: npt.ArrayLike | None = None,
         margin: float = 20.0,
         name: str = "city",
-        reference: tuple[float, float] | None = None,
+        reference: Place | None = None,
+        source: Source | None = None,
+        terrain: Terrain | float | None = None,
+        voxels: str = "touched",
+        no_fly: Sequence[NoFlyZone] = (),
     ) -> "City":
-        """Rasterise buildings: a voxel is occupied when its centre lies in one.
+        """Rasterise buildings and the ground that they stand on.
 
         Parameters
         ----------
@@ -81,44 +132,49 @@ class City:
         cell : float
             Edge of a voxel [m], typically 0.5 to 5.
         origin, size : (3,) arrays, optional
-            Lowest corner and extent of the map [m]. By default the buildings' bounding box, `margin` wider on each
-            side and above, down to the lowest building's floor.
+            Lowest corner and extent of the map [m]. By default the bounding box of buildings and ground, `margin` wider
+            on each side of the buildings and above all; the ground, where there is one, gets a layer of solid voxels.
         margin : float
-            Free space around the buildings [m] when `size` is not given.
+            Free space around and above [m] when `size` is not given, at least 0.
+        name, reference, source, no_fly
+            As for `City`.
+        terrain : Terrain or float, optional
+            The ground, in the coordinates of the buildings; one number for level ground at that height. Without it the
+            bottom of the map is the ground, and no obstacle.
+        voxels : {"touched", "centres"}
+            A voxel is occupied when a building reaches into it; or, as in the papers, only when its centre lies in
+            one, which loses what is thinner than a voxel.
 
         Raises
         ------
         ValueError
-            If there are neither buildings nor a size, `cell` is not above 0, or the map would have over
-            500 million voxels.
+            If there are neither buildings nor a size, `cell` is not above 0, the terrain doesn't cover the map, or the
+            map would have over 500 million voxels.
         """
         cell = checked_cell(cell)
-        if size is None or origin is None:
-            if not buildings:
-                raise ValueError(
-                    "buildings is empty, so the extent of the map is unknown: give origin and size, "
-                    "for example origin=(0, 0, 0), size=(100, 100, 100)"
-                )
-            low = np.min([building.bounds[0] for building in buildings], axis=0)
-            high = np.max([building.bounds[1] for building in buildings], axis=0)
-            around = np.array([margin, margin, 0.0])
-            origin = low - around if origin is None else checked_origin(origin)
-            size = high + np.array([margin, margin, margin]) - origin if size is None else size
-        corner, extent = checked_origin(origin), np.asarray(size, dtype=float)
-        if extent.shape != (3,) or not (np.isfinite(extent) & (extent > 0)).all():
-            raise ValueError(f"size must be three positive extents (x, y, z) in metres, got {size!r}")
-        shape = np.ceil(extent / cell - 1e-9)
-        if shape.prod() > MOST_VOXELS:
-            edge = (extent.prod() / MOST_VOXELS) ** (1 / 3)
-            raise ValueError(
-                f"cell={cell:g} m gives {shape[0]:.0f} × {shape[1]:.0f} × {shape[2]:.0f} voxels over "
-                f"{extent[0]:.0f} × {extent[1]:.0f} × {extent[2]:.0f} m, more than {MOST_VOXELS:,}: "
-                f"use a cell of at least {edge:.2g} m or a smaller size"
-            )
-        occupied = np.zeros(shape.astype(int), dtype=bool)
+        checks.one_of("voxels", voxels, RULES)
+        checks.not_negative_number("margin", margin)
+        corner, shape = extent_of(buildings, cell, origin, size, margin, terrain)
+        ground = top = None
+        if isinstance(terrain, Terrain):
+            ground, top = ground_and_top(terrain, corner, cell, shape)
+            if origin is None or size is None:  # the extent in height follows the ground of this map alone
+                least, most = float(ground.min()), float(top.max())
+                low = least if origin is None else corner[2]
+                high = max(corner[2] + cell * shape[2], most + margin) if size is None else corner[2] + cell * shape[2]
+                corner[2] = np.floor(least / cell - 1e-9) * cell - cell if origin is None else low
+                shape = (*shape[:2], int(np.ceil((high - corner[2]) / cell - 1e-9)))
+        elif terrain is not None:
+            checks.number("terrain", terrain)
+            checks.finite("terrain", terrain)
+            ground = np.full(shape[:2], float(terrain))
+        check_size(shape, cell)
+        occupied = np.zeros(shape, dtype=bool)
+        if top is not None:
+            mark_ground(occupied, top, cell, corner[2])
         for building in buildings:
-            rasterise(building, occupied, cell, corner)
-        return cls(occupied, cell, corner, tuple(buildings), name, reference)
+            rasterise(building.hulls, occupied, cell, corner, voxels)
+        return cls(locked(occupied), cell, corner, tuple(buildings), name, reference, ground, tuple(no_fly), source)
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -140,7 +196,7 @@ class City:
         clearance = squared_clearance(self.occupied)
         np.sqrt(clearance, out=clearance)
         clearance *= self.cell
-        return clearance
+        return locked(clearance)
 
     @cached_property
     def wall_normal(self) -> np.ndarray:
@@ -155,7 +211,7 @@ class City:
                 normal[..., axis] = np.gradient(clearance, axis=axis)
         size = np.linalg.norm(normal, axis=-1, keepdims=True)
         normal /= np.where(size > 1e-9, size, np.inf)
-        return normal
+        return locked(normal)
 
     def towards_wall(self, vector: npt.ArrayLike) -> np.ndarray:
         """How much of a vector (3,) points towards the nearest wall, max(0, −v·n), (nx, ny, nz)."""
@@ -167,20 +223,53 @@ class City:
         return np.maximum(0.0, self.wall_normal @ -direction)
 
     @cached_property
-    def height_above_surface(self) -> np.ndarray:
-        """Height of each centre above the next roof below it, else above the floor of the map, (nx, ny, nz) [m].
+    def range_of_ground(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest ground in each column, (nx, ny) each [m]; without terrain the bottom of the map."""
+        if self.ground is None:
+            floor = locked(np.full(self.occupied.shape[:2], self.origin[2]))
+            return floor, floor
+        lowest, highest = range_of_ground(self.ground)
+        return locked(lowest), locked(highest)
 
-        0 in an obstacle. Roofs are taken from the buildings, exactly; from the voxels where the city knows none.
+    def height_above_ground(self, points: npt.ArrayLike) -> np.ndarray:
+        """Height of points (..., 3) [m] above the ground below them, (...) [m]: bilinear between the columns' centres.
+
+        Beyond the border of the map the ground goes on as it is at it.
+
+        Raises
+        ------
+        ValueError
+            If `points` hasn't shape (..., 3) or is not finite.
+        """
+        points = checked_points(points)
+        if self.ground is None:
+            return points[..., 2] - self.origin[2]
+        return points[..., 2] - bilinear(self.ground, (points[..., :2] - self.origin[:2]) / self.cell)
+
+    @cached_property
+    def surface_below(self) -> np.ndarray:
+        """Highest point of ground and roofs below each centre, anywhere in its column, (nx, ny, nz) [m].
+
+        Roofs are taken from the buildings, exactly; from the voxels where the city knows none.
         """
         levels = self.coordinates(2)
+        surface = np.empty(self.shape)
+        surface[:] = np.minimum(self.range_of_ground[1][..., None], levels)
         if self.buildings:
-            surface = np.full(self.shape, self.origin[2])
             for building in self.buildings:
                 raise_surface(building, surface, levels, self.cell, self.origin)
         else:
-            tops = np.where(self.occupied, levels + self.cell / 2, self.origin[2])
+            tops = np.where(self.occupied, levels + self.cell / 2, surface)
             surface = np.maximum.accumulate(tops, axis=2)
-        return np.where(self.occupied, 0.0, np.maximum(levels - surface, 0.0))
+        return locked(surface)
+
+    @cached_property
+    def height_above_surface(self) -> np.ndarray:
+        """Height of each centre above what lies below it in its column, see `surface_below`, (nx, ny, nz) [m].
+
+        0 in an obstacle.
+        """
+        return locked(np.where(self.occupied, 0.0, np.maximum(self.coordinates(2) - self.surface_below, 0.0)))
 
     def distance(self, points: npt.ArrayLike, exact_within: float | None = None) -> np.ndarray:
         """Distance from points to the nearest obstacle's surface, where `clearance` has it from centres only.
@@ -213,28 +302,67 @@ class City:
         distances = distances_to_obstacle(self.occupied, self.clearance, self.cell, cells, near)
         return self.cell * distances.reshape(points.shape[:-1])
 
-    def blocked(self, min_clearance: float) -> np.ndarray:
-        """Where a UAV may not be: obstacles, and what is nearer to them than a distance.
+    def blocked(self, min_clearance: float = 0.0, *, min_height: float = 0.0, max_height: float = np.inf) -> np.ndarray:
+        """Where a UAV may not be: obstacles and what is near them, no-fly zones, and what is too low or too high.
 
         Parameters
         ----------
         min_clearance : float
             Least clearance allowed [m]; 0 leaves every free voxel open.
+        min_height, max_height : float
+            Least and greatest height above ground [m]. They hold for every point of a route in the voxel: above the
+            highest ground in its column, below the lowest; for its centre, as for `min_clearance`.
 
         Returns
         -------
         (nx, ny, nz) bool array
+            Not to be written to.
 
         Raises
         ------
         ValueError
-            If `min_clearance` is negative or not finite.
+            If `min_clearance` or `min_height` is negative or not finite, or `max_height` not above `min_height`.
         """
+        checks.number("min_clearance", min_clearance)
         if not (np.isfinite(min_clearance) and min_clearance >= 0):
             raise ValueError(f"min_clearance must be a distance in metres, at least 0, got {min_clearance!r}")
-        if min_clearance == 0:
-            return self.occupied
-        return self.clearance < min_clearance - 1e-9 * self.cell
+        check_heights(min_height, max_height)
+        blocked = self.occupied
+        if min_clearance > 0:
+            blocked = self.clearance < max(min_clearance - 1e-9 * self.cell, TINY)
+        if self.no_fly:
+            blocked = blocked | self.in_no_fly
+        if min_height > 0 or max_height < np.inf:
+            blocked = blocked | self.out_of_heights(min_height, max_height)
+        return locked(blocked)
+
+    def out_of_heights(self, min_height: float, max_height: float) -> np.ndarray:
+        """Which voxels' centres are too low or too high above ground, (nx, ny, nz) bool, see `blocked`."""
+        lowest, highest = self.range_of_ground
+        levels = self.coordinates(2)
+        too_low = levels < (highest + (min_height - 1e-9))[..., None]
+        return too_low | (levels > (lowest + (max_height + 1e-9))[..., None])
+
+    @cached_property
+    def in_no_fly(self) -> np.ndarray:
+        """Which voxels no-fly zones reach into, (nx, ny, nz) bool."""
+        inside = np.zeros(self.shape, dtype=bool)
+        for zone in self.no_fly:
+            rasterise(self.zone_building(zone).hulls, inside, self.cell, self.origin, "touched")
+        return locked(inside)
+
+    def zone_building(self, zone: NoFlyZone) -> Building:
+        """A no-fly zone as a body on this map: cut off at the map's top and bottom [m]."""
+        (low, high), column = self.bounds[:, 2], np.zeros(self.shape[:2], dtype=bool)
+        for piece in zone.pieces(low, high):
+            column |= touches(Building((piece,)), self.shape, self.cell, self.origin)
+        lowest, highest = self.range_of_ground
+        if column.any():
+            low, high = (
+                np.clip(zone.lower + lowest[column].min(), low, high - 1e-3),
+                np.clip(zone.upper + highest[column].max(), low + 1e-3, high),
+            )
+        return Building(tuple(zone.pieces(low, max(high, low + 1e-3))), zone.name)
 
     def cell_of(self, points: npt.ArrayLike) -> np.ndarray:
         """Indices (..., 3) of the voxels in which points (..., 3) [m] lie; out of range outside of the map or for NaN.
@@ -301,9 +429,59 @@ class City:
         return inside & ~self.occupied[tuple(np.moveaxis(index, -1, 0))]
 
     def building_at(self, point: npt.ArrayLike) -> str:
-        """Name of the building in whose voxels a point [m] lies; "an obstacle" if the map knows no buildings."""
-        center = self.center_of(self.cell_of(point))
-        return next((f"building {b.name!r}" for b in self.buildings if b.contains(center)), "an obstacle")
+        """Name of what is in the voxel of a point [m]: a building, the ground, or "an obstacle"."""
+        voxel = self.center_of(self.cell_of(point)) - self.cell / 2
+        for building in self.buildings:
+            here = np.zeros((1, 1, 1), dtype=bool)
+            rasterise(building.hulls, here, self.cell, voxel, "touched")
+            if here.any():
+                return f"building {building.name!r}"
+        return "the ground" if self.ground is not None else "an obstacle"
+
+    def zone_at(self, point: npt.ArrayLike) -> str:
+        """Name of a no-fly zone that reaches into the voxel of a point [m]; empty if there is none."""
+        voxel = self.center_of(self.cell_of(point)) - self.cell / 2
+        for zone in self.no_fly:
+            here = np.zeros((1, 1, 1), dtype=bool)
+            rasterise(self.zone_building(zone).hulls, here, self.cell, voxel, "touched")
+            if here.any():
+                return zone.name
+        return ""
+
+    def to_geographic(self, points: npt.ArrayLike) -> np.ndarray:
+        """Longitude and latitude [degrees, WGS84] and height of points (..., 3) [m] of this map, (..., 3).
+
+        The height [m] is in the vertical system of the file that the city was read from.
+
+        Raises
+        ------
+        ValueError
+            If the city has no `reference`, or `points` hasn't shape (..., 3) or is not finite.
+        """
+        points, place = checked_points(points), self.checked_reference()
+        lonlat = place.longitude_latitude(points[..., :2])
+        return np.concatenate([lonlat, points[..., 2:] + place.height], axis=-1)
+
+    def from_geographic(self, points: npt.ArrayLike) -> np.ndarray:
+        """Points (..., 3) [m] of this map from longitudes, latitudes and heights (..., 3), see `to_geographic`.
+
+        Raises
+        ------
+        ValueError
+            If the city has no `reference`, or `points` hasn't shape (..., 3), is not finite, or out of range.
+        """
+        points, place = checked_points(points), self.checked_reference()
+        checks.within("points: latitudes", points[..., 1], -90.0, 90.0, "degrees (order: longitude, latitude, height)")
+        return np.concatenate([place.east_north(points[..., :2]), points[..., 2:] - place.height], axis=-1)
+
+    def checked_reference(self) -> Place:
+        """The reference; `ValueError` with the cure where there is none."""
+        if self.reference is None:
+            raise ValueError(
+                f"{self.name!r} doesn't know where on Earth it lies: read it with crs=..., or give City its "
+                "reference=(longitude, latitude, height) of x = y = z = 0"
+            )
+        return self.reference
 
     def random_pairs(
         self, count: int, rng: np.random.Generator | int, *, apart: float = 40.0, min_clearance: float = 0.0
@@ -387,48 +565,76 @@ def checked_cell(cell: float) -> float:
 
 
 def checked_origin(origin: npt.ArrayLike) -> np.ndarray:
-    corner = np.asarray(origin, dtype=float)
+    corner = checks.frozen(checks.numbers("origin", origin))
     if corner.shape != (3,) or not np.isfinite(corner).all():
         raise ValueError(f"origin must be three finite numbers (x, y, z) in metres, got {origin!r}")
     return corner
 
 
-def rasterise(building: Building, occupied: np.ndarray, cell: float, origin: np.ndarray) -> None:
-    """Mark the voxels whose centres lie in the building, in place; what sticks out of the map is cut off."""
-    for hull in building.hulls:
-        low, high = voxels_around(hull, occupied.shape, cell, origin)
-        x, y, z = np.ix_(*(origin[a] + cell * (np.arange(low[a], high[a]) + 0.5) for a in range(3)))
-        inside = np.ones(high - low, dtype=bool)
-        for a, b, c, d in hull.equations:  # one face after the other, as in Building.contains, for memory's sake
-            inside &= a * x + b * y + c * z + d <= FACE_TOLERANCE
-        occupied[low[0] : high[0], low[1] : high[1], low[2] : high[2]] |= inside
+def locked(array: np.ndarray) -> np.ndarray:
+    """The array, from now on not to be written to."""
+    array.setflags(write=False)
+    return array
 
 
-def raise_surface(building: Building, surface: np.ndarray, levels: np.ndarray, cell: float, origin: np.ndarray) -> None:
-    """Raise the surface below each centre (nx, ny, nz) to the building's roofs that lie below it, in place.
-
-    A vertical line meets the face a·x + b·y + c·z + d = 0 of a convex piece at one height, and is inside the piece
-    below all faces that look up (c > 0), above all that look down, and behind those that are vertical.
-    """
-    for hull in building.hulls:
-        low, high = voxels_around(hull, surface.shape, cell, origin)
-        x, y = np.ix_(*(origin[a] + cell * (np.arange(low[a], high[a]) + 0.5) for a in range(2)))
-        roof, floor = np.full(np.broadcast_shapes(x.shape, y.shape), np.inf), np.full((1, 1), -np.inf)
-        for a, b, c, d in hull.equations:
-            behind = a * x + b * y + d
-            if abs(c) <= FACE_TOLERANCE:
-                roof = np.where(behind <= FACE_TOLERANCE, roof, -np.inf)
-            elif c > 0:
-                roof = np.minimum(roof, -behind / c)
-            else:
-                floor = np.maximum(floor, -behind / c)
-        roof = np.where(roof >= floor, roof, -np.inf)[..., None]
-        columns = surface[low[0] : high[0], low[1] : high[1]]
-        np.maximum(columns, np.where(roof <= levels + FACE_TOLERANCE, roof, -np.inf), out=columns)
+def checked_points(points: npt.ArrayLike) -> np.ndarray:
+    array = checks.numbers("points", points)
+    if array.shape[-1:] != (3,) or not np.isfinite(array).all():
+        raise ValueError(f"points must be finite and have shape (..., 3), got shape {array.shape}")
+    return array
 
 
-def voxels_around(hull: ConvexHull, shape: Sequence[int], cell: float, origin: np.ndarray) -> tuple[np.ndarray, ...]:
-    """First and, exclusively, last index (3,) of the voxels whose centres may lie in a hull."""
-    low = np.clip(np.floor((hull.min_bound - origin) / cell - 0.5).astype(int), 0, shape)
-    high = np.clip(np.ceil((hull.max_bound - origin) / cell + 0.5).astype(int), 0, shape)
-    return low, high
+def check_heights(min_height: float, max_height: float) -> None:
+    """Refuse heights above ground that leave nothing in between."""
+    checks.not_negative_number("min_height", min_height)
+    checks.number("max_height", max_height)
+    if not max_height > min_height:
+        raise ValueError(f"max_height must be above min_height ({min_height:g} m), got {max_height!r}")
+
+
+def extent_of(
+    buildings: Sequence[Building],
+    cell: float,
+    origin: npt.ArrayLike | None,
+    size: npt.ArrayLike | None,
+    margin: float,
+    terrain: Terrain | float | None,
+) -> tuple[np.ndarray, tuple[int, int, int]]:
+    """Lowest corner [m] and shape of a map, see `City.from_buildings`."""
+    if size is None or origin is None:
+        if not buildings:
+            raise ValueError(
+                "buildings is empty, so the extent of the map is unknown: give origin and size, "
+                "for example origin=(0, 0, 0), size=(100, 100, 100)"
+            )
+        low = np.min([building.bounds[0] for building in buildings], axis=0)
+        low[2] = min(low[2], 0.0)  # where all buildings float, the ground is below them
+        high = np.max([building.bounds[1] for building in buildings], axis=0)
+        if isinstance(terrain, int | float):
+            low[2], high[2] = min(low[2], terrain), max(high[2], terrain)
+            low[2] = np.floor(low[2] / cell + 1e-9) * cell - cell  # one layer of voxels is solid
+        around = np.array([margin, margin, 0.0])
+        origin = low - around if origin is None else checked_origin(origin)
+        size = high + np.array([margin, margin, margin]) - origin if size is None else size
+    corner, extent = np.array(checked_origin(origin)), np.asarray(size, dtype=float)
+    if extent.shape != (3,) or not (np.isfinite(extent) & (extent > 0)).all():
+        raise ValueError(f"size must be three positive extents (x, y, z) in metres, got {size!r}")
+    nx, ny, nz = np.ceil(extent / cell - 1e-9)
+    check_size((nx, ny, nz), cell)
+    return corner, (int(nx), int(ny), int(nz))
+
+
+def check_size(shape: Sequence[float], cell: float) -> None:
+    """Refuse a map of too many voxels; the cell that would do is rounded up, so that it does."""
+    if np.prod(shape, dtype=float) > MOST_VOXELS:
+        extent = cell * np.array(shape)
+        edge = cell * (np.prod(shape, dtype=float) / MOST_VOXELS) ** (1 / 3)
+        step = 10.0 ** (np.floor(np.log10(edge)) - 2)
+        edge = step * np.ceil(edge / step)
+        while np.prod(np.ceil(extent / edge)) > MOST_VOXELS:  # whole voxels are a little more
+            edge += step
+        raise ValueError(
+            f"cell={cell:g} m gives {shape[0]:.0f} × {shape[1]:.0f} × {shape[2]:.0f} voxels over "
+            f"{extent[0]:.0f} × {extent[1]:.0f} × {extent[2]:.0f} m, more than {MOST_VOXELS:,}: "
+            f"use a cell of at least {edge:.3g} m or a smaller size"
+        )

@@ -8,7 +8,6 @@ import html
 import warnings
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from uavlab import checks
 
@@ -21,7 +20,8 @@ FIRST = 3
 """Of so many things the names are kept."""
 
 
-class Entry(NamedTuple):
+@dataclass(frozen=True)
+class Entry:
     """One thing that a reader did, and how often."""
 
     kind: str

@@ -47,11 +47,14 @@ def table1_city(cell: float = 1.0) -> City:
     Parameters
     ----------
     cell : float
-        Edge of a voxel [m]; the paper's is 1, which gives 100³ voxels, 144 858 of them occupied.
+        Edge of a voxel [m]; the paper's is 1, which gives 100³ voxels, 144 858 of them occupied: those whose centres
+        lie in a building.
 
     Returns
     -------
     City
         100 × 100 × 100 m with five buildings, one of them floating, one an L-shaped notch.
     """
-    return City.from_buildings(table1_buildings(), cell=cell, origin=(0, 0, 0), size=(100, 100, 100), name="Table 1")
+    return City.from_buildings(
+        table1_buildings(), cell=cell, origin=(0, 0, 0), size=(100, 100, 100), name="Table 1", voxels="centres"
+    )

@@ -31,6 +31,7 @@ from uavlab.planners.least_risk import (
     solve,
     state_after,
     what_binds,
+    with_vertical_legs,
 )
 from uavlab.risk import RiskMap
 from uavlab.route import Route
@@ -80,6 +81,8 @@ def ant_colony(
     max_turn: float = MAX_TURN,
     max_pitch: float = MAX_PITCH,
     min_clearance: float = 0.0,
+    min_height: float | None = None,
+    max_height: float = np.inf,
     drift: bool = False,
     record: bool = False,
     as_printed: bool = False,
@@ -91,7 +94,7 @@ def ant_colony(
 
     Parameters
     ----------
-    risk_map, start, goal, risk, length, threat, max_turn, max_pitch, min_clearance, drift
+    risk_map, start, goal, risk, length, threat, max_turn, max_pitch, min_clearance, min_height, max_height, drift
         As for `least_risk`, which finds the least cost there is.
     rng : numpy.random.Generator or int
         Or a seed for one.
@@ -144,9 +147,10 @@ def ant_colony(
     least = ants * (splits + 1) * (2 if splits else 1)
     if budget < least:
         raise ValueError(f"budget must be at least {least}, for {ants} ants and {splits} splits, got {budget}")
-    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     price = price_per_cell(risk_map, risk, length, threat, drift)
-    query = query_of(risk_map, price, *flyable_endpoints(risk_map, start, goal, min_clearance), limits)
+    between = flyable_endpoints(risk_map, start, goal, limits)
+    query = query_of(risk_map, price, between.source, between.target, limits)
     if as_printed:
         habits = habits._replace(deposit=habits.deposit / risk_map.city.cell)  # Q/L: L in metres, ants count cells
     colony = Colony(query, habits, height_guided, as_printed, ants, rng)
@@ -192,7 +196,8 @@ def ant_colony(
             reason += "each ran into a dead end of voxels it may not turn to, or had visited; more ants may help, or a "
             reason += "larger max_turn"
         return Route(np.empty((0, 3)), "ant colony", reached=False, reason=reason, cost=np.inf, info=info)
-    return Route(city.center_of(city.index_of(nodes)), "ant colony", cost=total, info=info)
+    route = Route(city.center_of(city.index_of(nodes)), "ant colony", cost=total, info=info)
+    return with_vertical_legs(route, city, between, price)
 
 
 def checked_habits(

@@ -19,12 +19,11 @@ from uavlab.planners.grid import (
     LENGTHS,
     MOVES,
     blocked_around,
-    checked_price,
     distance_left,
-    endpoints,
     steps_of,
 )
 from uavlab.planners.heap import open_list, pop, push, room
+from uavlab.planners.question import Airspace, checked_price, endpoints
 from uavlab.route import Route
 
 TIE_BREAK = 1 + 1e-9
@@ -42,6 +41,8 @@ def astar(
     price: npt.ArrayLike | None = None,
     heuristic: str = "octile",
     min_clearance: float = 0.0,
+    min_height: float = 0.0,
+    max_height: float = np.inf,
     as_printed: bool = False,
     record: bool = False,
 ) -> Route:
@@ -61,7 +62,10 @@ def astar(
     heuristic : {"octile", "euclidean", "zero"}
         Estimate of the remaining way: by 26 moves on an empty map; straight (Eq. 9); none (Dijkstra).
     min_clearance : float
-        Distance to obstacle surfaces that no node of the route may fall below [m], for example D_min (Eq. 7).
+        Distance to obstacles that no point of the route may fall below [m], for example D_min (Eq. 7).
+    min_height, max_height : float
+        Least and greatest height above ground [m], on every point of the route; a legal ceiling is often 120 m. A start
+        or goal below `min_height` is left and reached vertically, there through any free voxels.
     as_printed : bool
         Order the open list by Eq. 13: T = g·price + h. The factor multiplies the whole way so far and no
         successor inherits it, so it is no cost of a route: the result depends on the direction of travel, and
@@ -83,19 +87,21 @@ def astar(
     checks.one_of("heuristic", heuristic, HEURISTICS)
     if as_printed and price is None:
         raise ValueError("as_printed needs a price: without a penalty zone Eq. 13 is plain A*")
-    source, target = endpoints(city, start, goal, min_clearance)
+    airspace = Airspace(city, min_clearance, min_height, max_height)
+    ends = endpoints(airspace, start, goal)
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
-    return cheapest_route(
+    route = cheapest_route(
         city,
-        source,
-        target,
-        city.blocked(min_clearance),
+        ends.source,
+        ends.target,
+        airspace.blocked,
         prices,
         cheapest,
         heuristic=heuristic,
         as_printed=as_printed,
         record=record,
     )
+    return ends.added_to(route, city, None if as_printed else prices)
 
 
 def cheapest_route(

@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
-from uavlab.planners.least_risk import Limits, flyable_endpoints, query_of
+from uavlab.planners.least_risk import Limits, query_of
+from uavlab.planners.question import Ends
 from uavlab.risk import RiskMap
 from uavlab.spline.basis import cubic_bspline, fitted, spread, subdivided
 
@@ -69,11 +70,9 @@ class Task(NamedTuple):
         return fitted(points, count) if self.spline else spread(points, count)
 
 
-def task_of(
-    risk_map: RiskMap, start: npt.ArrayLike, goal: npt.ArrayLike, price: np.ndarray, limits: Limits, spline: bool
-) -> Task:
+def task_of(risk_map: RiskMap, ends: Ends, price: np.ndarray, limits: Limits, spline: bool) -> Task:
     """The question of `least_risk`, for curves: from the centre of the start's voxel to that of the goal's."""
-    codes = flyable_endpoints(risk_map, start, goal, limits.min_clearance)
+    codes = ends.source, ends.target
     blocked = query_of(risk_map, price, *codes, limits).blocked
     price = price.reshape(risk_map.city.shape)
     source, target = risk_map.city.index_of(np.array(codes)) + 0.5

@@ -13,9 +13,10 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.model import locked
 from uavlab.offsets import crossing_rate
 from uavlab.planners.astar import cheapest_route
-from uavlab.planners.grid import endpoints
+from uavlab.planners.question import Airspace, endpoints
 from uavlab.planners.shortcut import shortcut
 from uavlab.route import Route
 
@@ -55,7 +56,7 @@ def hazard_price(
     Returns
     -------
     (nx, ny, nz) array
-        For `astar(..., price=...)` and `shortcut(..., price=...)`; copy it before you change it.
+        For `astar(..., price=...)` and `shortcut(..., price=...)`; not to be written to.
 
     Raises
     ------
@@ -75,7 +76,7 @@ def cached_price(
     city: City, sigma: float, uav_radius: float, mean_offset: tuple[float, ...], crash_price: float
 ) -> np.ndarray:
     margin = np.minimum(city.clearance, 100.0 * sigma) - uav_radius - city.towards_wall(mean_offset)
-    return 1.0 + crash_price * crossing_rate(np.maximum(margin, 0.0), sigma)
+    return locked(1.0 + crash_price * crossing_rate(np.maximum(margin, 0.0), sigma))
 
 
 def hazard_astar(
@@ -85,6 +86,8 @@ def hazard_astar(
     *,
     sigma: float,
     any_angle: bool = True,
+    min_height: float = 0.0,
+    max_height: float = np.inf,
     **hazard: float | npt.ArrayLike,
 ) -> Route:
     """The route of least length plus hazard, over 26 neighbours, then by straight lines at the same price.
@@ -98,6 +101,8 @@ def hazard_astar(
         σ of the offset on one axis [m], above 0.
     any_angle : bool
         Join by straight lines what that makes no dearer, see `shortcut`.
+    min_height, max_height : float
+        As for `astar` [m].
     **hazard
         As for `hazard_price`.
 
@@ -112,8 +117,10 @@ def hazard_astar(
         If start or goal can't be flown from or to, or an argument is out of its range.
     """
     price = hazard_price(city, sigma, **hazard)  # type: ignore[arg-type]
-    source, target = endpoints(city, start, goal)
-    route = cheapest_route(city, source, target, city.occupied, price, cheapest=1.0)
+    airspace = Airspace(city, 0.0, min_height, max_height)
+    ends = endpoints(airspace, start, goal)
+    route = cheapest_route(city, ends.source, ends.target, airspace.blocked, price, cheapest=1.0)
+    route = ends.added_to(route, city, price)
     if any_angle:
-        route = shortcut(route, city, price=price)
+        route = shortcut(route, city, price=price, min_height=min_height, max_height=max_height)
     return replace(route, planner="hazard A*")

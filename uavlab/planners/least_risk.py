@@ -17,12 +17,15 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
+from uavlab.city import City
+from uavlab.city.model import check_heights, locked
 from uavlab.compiled import compiled
 from uavlab.planners.astar import ROUNDING, TIE_BREAK
-from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around_node, endpoints, nearest_allowed, steps_of
+from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around_node, steps_of
 from uavlab.planners.heap import open_list, pop, push, room
+from uavlab.planners.question import Airspace, Ends, endpoints
 from uavlab.risk import RiskMap
-from uavlab.risk.model import heights_above_ground, high_enough
+from uavlab.risk.model import high_enough
 from uavlab.route import Route
 
 MAX_TURN = MAX_PITCH = np.pi / 3
@@ -36,6 +39,9 @@ MOVE_HEADING = np.where(
     (MOVES[:, :2] == 0).all(axis=1), NO_HEADING, np.round(np.arctan2(MOVES[:, 1], MOVES[:, 0]) / (np.pi / 4)) % HEADINGS
 ).astype(np.int64)
 """Heading of each move (26,), in eighths of a turn from east; a vertical move has none."""
+
+UPWARDS = int(np.flatnonzero((MOVES == (0, 0, 1)).all(axis=1))[0])
+"""The move straight up."""
 
 MOVE_PITCH = np.abs(np.arctan2(MOVES[:, 2], np.hypot(MOVES[:, 0], MOVES[:, 1])))
 
@@ -55,6 +61,8 @@ def least_risk(
     max_pitch: float = MAX_PITCH,
     max_length: float | None = None,
     min_clearance: float = 0.0,
+    min_height: float | None = None,
+    max_height: float = np.inf,
     drift: bool = False,
     heuristic: str = "backward",
 ) -> Route:
@@ -80,9 +88,12 @@ def least_risk(
         Greatest climb or descent of a leg [rad]: from 35.3° on through corners, from 45° on through edges, at 90°
         vertical.
     max_length : float, optional
-        Greatest length [m].
+        Greatest length [m], but for take-off and landing.
     min_clearance : float
-        Least clearance [m], see `City.clearance`.
+        Least distance to obstacles [m], see `City.clearance`.
+    min_height, max_height : float
+        Least and greatest height above ground [m], by default the map's `min_height` and none. A start or goal below
+        it is left and reached vertically, whatever the other limits.
     drift : bool
         Take the risk where the wreck lands, ahead of the UAV, see `RiskMap.rate_ahead`.
     heuristic : {"backward", "zero"}
@@ -104,10 +115,10 @@ def least_risk(
         raise ValueError(f"heuristic must be 'backward' or 'zero', got {heuristic!r}")
     if max_length is not None:
         checks.positive_number("max_length", max_length)
-    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     price = price_per_cell(risk_map, risk, length, threat, drift)
-    source, target = flyable_endpoints(risk_map, start, goal, min_clearance)
-    query = query_of(risk_map, price, source, target, limits)
+    ends = flyable_endpoints(risk_map, start, goal, limits)
+    query = query_of(risk_map, price, ends.source, ends.target, limits)
     if max_length is None:
         nodes, cost, expanded = solve(query, heuristic == "backward")
     else:
@@ -116,11 +127,17 @@ def least_risk(
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
     name = "least risk" if length == threat == 0 else "shortest" if risk == threat == 0 else "least cost"
     if len(nodes) == 0:
-        ends = f"from {checks.show(start)} to {checks.show(goal)}"
-        reason = f"no route {ends}: {what_binds(risk_map, query, limits, max_length)}"
+        asked = f"from {checks.show(start)} to {checks.show(goal)}"
+        reason = f"no route {asked}: {what_binds(risk_map, query, limits, max_length)}"
         return Route(np.empty((0, 3)), name, reached=False, reason=reason, cost=np.inf, info=info)
     city = risk_map.city
-    return Route(city.center_of(city.index_of(nodes)), name, cost=cost, info=info)
+    route = Route(city.center_of(city.index_of(nodes)), name, cost=cost, info=info)
+    return with_vertical_legs(route, city, ends, price)
+
+
+def with_vertical_legs(route: Route, city: City, ends: Ends, price: np.ndarray) -> Route:
+    """The route with take-off and landing, at a price per cell of way (1 or 26, nodes)."""
+    return ends.added_to(route, city, price[UPWARDS if len(price) > 1 else 0] / city.cell)
 
 
 def pareto_front(
@@ -132,13 +149,15 @@ def pareto_front(
     max_turn: float = MAX_TURN,
     max_pitch: float = MAX_PITCH,
     min_clearance: float = 0.0,
+    min_height: float | None = None,
+    max_height: float = np.inf,
     drift: bool = False,
 ) -> list[Route]:
     """The least risk for each length that one is ready to fly, exactly (ε-constraint method).
 
     Parameters
     ----------
-    risk_map, start, goal, max_turn, max_pitch, min_clearance, drift
+    risk_map, start, goal, max_turn, max_pitch, min_clearance, min_height, max_height, drift
         As for `least_risk`.
     lengths : int or array
         Greatest lengths to ask for [m]; or how many, spread evenly from the shortest route's to that of the route of
@@ -157,7 +176,7 @@ def pareto_front(
         If start or goal can't be flown from or to, or an argument is out of its range.
     """
     began = time.perf_counter()
-    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     count = int(lengths) if isinstance(lengths, int | np.integer) else None
     if count is not None:
         checks.whole("lengths", count, least=2)
@@ -165,13 +184,19 @@ def pareto_front(
         raise ValueError("lengths is empty: give how many, or at least one length [m]")
     else:
         checks.positive("lengths", lengths)
-    source, target = flyable_endpoints(risk_map, start, goal, min_clearance)
-    query = query_of(risk_map, price_per_cell(risk_map, 1.0, 0.0, 0.0, drift), source, target, limits)
+    ends = flyable_endpoints(risk_map, start, goal, limits)
+    price = price_per_cell(risk_map, 1.0, 0.0, 0.0, drift)
+    query = query_of(risk_map, price, ends.source, ends.target, limits)
     by_length = city_lengths(query)
     city = risk_map.city
     shortest, least, _ = solve(by_length, True)
     if len(shortest) == 0:
-        return [least_risk(risk_map, start, goal, max_turn=max_turn, max_pitch=max_pitch, min_clearance=min_clearance)]
+        return [
+            least_risk(
+                risk_map, start, goal, max_turn=max_turn, max_pitch=max_pitch,
+                min_clearance=min_clearance, min_height=min_height, max_height=max_height,
+            )
+        ]  # fmt: skip
     if count is None:
         asked = checks.numbers("lengths", lengths).ravel() / city.cell
     else:
@@ -180,9 +205,10 @@ def pareto_front(
         asked = np.linspace(least, longest, count)
     routes, expanded = constrained(query, by_length, np.unique(asked))
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
-    return [
+    found = [
         Route(city.center_of(city.index_of(nodes)), "least risk", cost=cost, info=dict(info)) for nodes, cost in routes
     ]
+    return [with_vertical_legs(route, city, ends, price) for route in found]
 
 
 class Limits(NamedTuple):
@@ -192,7 +218,8 @@ class Limits(NamedTuple):
     max_pitch: float
     min_clearance: float
     safe_height: float
-    lowest_height: float
+    min_height: float
+    max_height: float
 
 
 class Query(NamedTuple):
@@ -211,9 +238,14 @@ def query_of(risk_map: RiskMap, price: np.ndarray, source: int, target: int, lim
     apart = np.abs(MOVE_HEADING - np.arange(STATES)[:, None]) * np.pi / 4
     turn = np.minimum(apart, 2 * np.pi - apart) <= limits.max_turn + 1e-9
     turn[NO_HEADING] = turn[:, MOVE_HEADING == NO_HEADING] = True
-    flyable = high_enough(risk_map.city, limits.safe_height, limits.lowest_height)
-    blocked = ~flyable | risk_map.city.blocked(limits.min_clearance)
+    blocked = locked(airspace_of(risk_map, limits).blocked)
     return Query(blocked, price, limits.max_pitch + 1e-9 >= MOVE_PITCH, turn, source, target)
+
+
+def airspace_of(risk_map: RiskMap, limits: Limits) -> Airspace:
+    """Where the limits allow to be."""
+    flyable = high_enough(risk_map.city, limits.safe_height)
+    return Airspace(risk_map.city, limits.min_clearance, limits.min_height, limits.max_height, flyable)
 
 
 def city_lengths(query: Query) -> Query:
@@ -235,34 +267,30 @@ def price_per_cell(risk_map: RiskMap, risk: float, length: float, threat: float,
     return np.maximum(price, LEAST_PRICE * price.max() + 1e-300).reshape(len(price), -1)
 
 
-def checked_limits(risk_map: RiskMap, max_turn: float, max_pitch: float, min_clearance: float) -> Limits:
+def checked_limits(
+    risk_map: RiskMap,
+    max_turn: float,
+    max_pitch: float,
+    min_clearance: float,
+    min_height: float | None,
+    max_height: float,
+) -> Limits:
     checks.instance("risk_map", risk_map, RiskMap)
     checks.number("min_clearance", min_clearance)
     checks.finite("min_clearance", min_clearance)
     for name, angle, most in (("max_turn", max_turn, np.pi), ("max_pitch", max_pitch, np.pi / 2)):
         checks.number(name, angle)
         checks.within(name, angle, 0.0, most + 1e-9, "rad (from degrees: numpy.radians)")
-    return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, risk_map.lowest_height)
+    lowest = risk_map.min_height if min_height is None else min_height
+    check_heights(lowest, max_height)
+    return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, lowest, max_height)
 
 
-def flyable_endpoints(
-    risk_map: RiskMap, start: npt.ArrayLike, goal: npt.ArrayLike, min_clearance: float
-) -> tuple[int, int]:
-    """Codes of the start's and the goal's voxel; `ValueError` if the UAV may not fly there."""
-    city = risk_map.city
+def flyable_endpoints(risk_map: RiskMap, start: npt.ArrayLike, goal: npt.ArrayLike, limits: Limits) -> Ends:
+    """Between which voxels to look; `ValueError` if the UAV may not fly there."""
     for name, point in (("start", start), ("goal", goal)):
         checks.numbers(name, point)
-    codes = endpoints(city, start, goal, min_clearance, risk_map.flyable)
-    for name, code, point in zip(("start", "goal"), codes, (start, goal), strict=True):
-        if not risk_map.flyable.flat[code]:
-            above = city.height_above_surface.flat[code]
-            allowed = risk_map.flyable & ~city.blocked(min_clearance)
-            raise ValueError(
-                f"{name} {checks.show(point)} is too low: its voxel's centre is {above:.1f} m above what lies below, "
-                f"safe_height asks for {risk_map.safe_height:g} m and lowest_height for {risk_map.lowest_height:g} m "
-                f"above the ground; {nearest_allowed(city, np.asarray(point, float), allowed)}"
-            )
-    return codes
+    return endpoints(airspace_of(risk_map, limits), start, goal)
 
 
 def what_binds(risk_map: RiskMap, query: Query, limits: Limits, max_length: float | None) -> str:
@@ -318,8 +346,15 @@ def looser_values(risk_map: RiskMap, limits: Limits) -> dict[str, list[float]]:
         "max_pitch": above(limits.max_pitch, (35.27, 45, 90)),
         "min_clearance": below(limits.min_clearance, city.clearance),
         "safe_height": below(limits.safe_height, city.height_above_surface),
-        "lowest_height": below(limits.lowest_height, heights_above_ground(city)),
+        "min_height": below(limits.min_height, least_heights(city)),
+        "max_height": [np.inf] if limits.max_height < np.inf else [],
     }
+
+
+def least_heights(city: City) -> np.ndarray:
+    """Heights [m] of all centres above the highest ground in their columns, each once, from 0."""
+    heights = city.coordinates(2) - city.range_of_ground[1][..., None]
+    return np.unique(heights[heights > 0])
 
 
 def setting(name: str, value: float) -> str:

@@ -14,7 +14,8 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.compiled import compiled
-from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, endpoints
+from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around
+from uavlab.planners.question import Airspace, endpoints
 from uavlab.planners.shortcut import line_cost
 from uavlab.route import Route
 
@@ -34,6 +35,7 @@ class Field(NamedTuple):
     """What pulls and pushes, as numbers for compiled code; lengths in metres from the map's origin."""
 
     occupied: np.ndarray
+    closed: np.ndarray  # where it may not fly; obstacles, and what doesn't push
     cell: float
     goal: np.ndarray
     conic: bool
@@ -56,6 +58,8 @@ def potential_field(
     reach: float = 5.0,
     step: float | None = None,
     max_steps: int = 5000,
+    min_height: float = 0.0,
+    max_height: float = np.inf,
     record: bool = False,
 ) -> Route:
     """Follow the resultant of attraction and repulsion from the start (REPARE Eqs 14-16).
@@ -83,6 +87,8 @@ def potential_field(
         Length of a continuous step [m]; half a cell by default.
     max_steps : int
         After so many it gives up.
+    min_height, max_height : float
+        As for `astar` [m]. They close voxels, as no-fly zones do, and don't push.
     record : bool
         Keep the forces in `info["attraction"]` and `info["repulsion"]`, (N, 3) at the waypoints.
 
@@ -103,16 +109,20 @@ def potential_field(
     step = city.cell / 2 if step is None else step
     checks.positive_number("step", step)
     checks.whole("max_steps", max_steps, least=1)
-    source, target = endpoints(city, start, goal)
+    airspace = Airspace(city, 0.0, min_height, max_height)
+    ends = endpoints(airspace, start, goal)
     began = time.perf_counter()
-    first, last = city.index_of([source, target])
-    aim = city.center_of(last) if moves == "lattice" else np.asarray(goal, dtype=float)
-    field = field_of(city, aim, attraction, obstacles, pull, push, reach)
+    first, last = city.index_of([ends.source, ends.target])
+    begin, aim = city.center_of([first, last])
+    if moves == "continuous":
+        begin = begin if ends.takeoff else np.asarray(start, dtype=float)
+        aim = aim if ends.landing else np.asarray(goal, dtype=float)
+    field = field_of(city, aim, attraction, obstacles, pull, push, reach)._replace(closed=airspace.blocked)
     if moves == "lattice":
         nodes, outcome = walk_lattice(field, first, last, max_steps)
         points = city.center_of(nodes)
     else:
-        points, outcome = walk_freely(field, np.asarray(start, dtype=float) - city.origin, float(step), max_steps)
+        points, outcome = walk_freely(field, begin - city.origin, float(step), max_steps)
         points = points + city.origin
     info: dict = {"steps": len(points) - 1, "elapsed": time.perf_counter() - began}
     if record:
@@ -122,15 +132,17 @@ def potential_field(
     reason = REASONS[outcome].format(place=place, left=np.linalg.norm(points[-1] - aim), steps=max_steps)
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     cost = np.inf if reason else length
-    return Route(points, "potential field", reached=not reason, reason=reason, cost=cost, info=info)
+    route = Route(points, "potential field", reached=not reason, reason=reason, cost=cost, info=info)
+    return ends.added_to(route, city)
 
 
-ARRIVED, TRAPPED, CIRCLES, CRASHED, GAVE_UP = range(5)
+ARRIVED, TRAPPED, CIRCLES, CRASHED, FORBIDDEN, GAVE_UP = range(6)
 REASONS = (
     "",
     "stuck in a local minimum at {place}, {left:.1f} m from the goal: no move goes along the force",
     "stuck in a local minimum at {place}, {left:.1f} m from the goal: it trembles there without getting on",
     "flies into an obstacle at {place}, {left:.1f} m from the goal: the push is too weak or the step too long",
+    "flies where it may not at {place}, {left:.1f} m from the goal: zones and limits of height don't push",
     "gave up after {steps} steps at {place}, {left:.1f} m from the goal",
 )
 
@@ -173,7 +185,7 @@ def field_of(
     for name, number in (("pull", pull), ("push", push), ("reach", reach)):
         checks.positive_number(name, number)
     return Field(
-        city.occupied, city.cell, goal - city.origin, attraction == "conic",
+        city.occupied, city.occupied, city.cell, goal - city.origin, attraction == "conic",
         float(pull), float(push), float(reach), obstacles == "surface",
     )  # fmt: skip
 
@@ -270,7 +282,7 @@ def walk_lattice(field, start, goal, most):
         seen[here[0], here[1], here[2]] = True
         pull, push, _ = force(field, (here + 0.5) * field.cell)
         resultant = pull + push
-        around = blocked_around(field.occupied, here[0], here[1], here[2])
+        around = blocked_around(field.closed, here[0], here[1], here[2])
         best, most_along = -1, 1e-12 * math.sqrt((resultant**2).sum())
         for move in range(26):
             if not around & BOXES[move]:
@@ -314,4 +326,6 @@ def walk_freely(field, start, step, most):
                 points[n + 1, axis] = min(max(here[axis] + resultant[axis] * (step / size), 0.0), top[axis])
         if np.isinf(line_cost(field.occupied, None, here / field.cell, points[n + 1] / field.cell)):
             return points[: n + 1], CRASHED
+        if np.isinf(line_cost(field.closed, None, here / field.cell, points[n + 1] / field.cell)):
+            return points[: n + 1], FORBIDDEN
     return points, GAVE_UP

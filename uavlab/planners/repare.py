@@ -17,9 +17,10 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.planners.astar import astar, cheapest_route, penalty_zone
-from uavlab.planners.grid import endpoints, nearest_allowed
+from uavlab.city.model import locked
+from uavlab.planners.astar import cheapest_route, penalty_zone
 from uavlab.planners.potential_field import repulsion
+from uavlab.planners.question import Airspace, checked_price, endpoints, nearest_allowed
 from uavlab.resilience import (
     DISTURBANCES,
     LOADS,
@@ -67,6 +68,8 @@ def repare(
     load_weight: float = 1.0,
     shape: str = "ball",
     interval: float = 1.0,
+    min_height: float = 0.0,
+    max_height: float = np.inf,
     as_printed: bool = False,
     record: bool = False,
 ) -> Route:
@@ -99,6 +102,8 @@ def repare(
         Of the zone, see `penalty_zone`.
     interval : float
         How often the disturbance is looked at in flight [s], above 0; at the next waypoint after it.
+    min_height, max_height : float
+        As for `astar` [m].
     as_printed : bool
         Eq. 13 with the 26 points of the outer ring and a fixed ω₀: forces and mean offset aren't used, and the route
         depends on the direction of travel.
@@ -125,27 +130,30 @@ def repare(
         return flight_conditions(load, observed, uav, reading=reading, clock=clock)
 
     now = conditions_at(0.0)
-    _, target = endpoints(city, start, goal)
+    airspace = Airspace(city, 0.0, min_height, max_height)
+    ends = endpoints(airspace, start, goal)
     if now.grounded:
         return Route(np.empty((0, 3)), "REPARE", reached=False, reason=f"grounded: {now.grounded}", cost=np.inf)
     widening = (0.0, 0.0, 0.0) if as_printed else checks.three("mean_offset", mean_offset)
-    for name, point in (("start", start), ("goal", goal)):
-        refuse_swallowed(city, name, point, now.safe_distance, widening)
+    for name, node in (("start", ends.source), ("goal", ends.target)):
+        refuse_swallowed(city, name, node, now.safe_distance, widening)
 
     def plan(here: npt.ArrayLike, given: Conditions) -> Route:
+        source = int(city.code_of(city.cell_of(here)))
         if as_printed:
             zone = penalty_zone(city, given.safe_distance, penalty=penalty, shape="ring")
-            return astar(city, here, goal, price=zone, heuristic="euclidean", as_printed=True, record=record)
+            return cheapest_route(
+                city, source, ends.target, airspace.blocked, *checked_price(city, zone),
+                heuristic="euclidean", as_printed=True, record=record,
+            )  # fmt: skip
         price = repare_price(city, given, widening, (penalty, force_weight, load_weight), shape)
-        source = int(city.code_of(city.cell_of(here)))
-        return cheapest_route(city, source, target, city.occupied, price, cheapest=1.0, record=record)
+        return cheapest_route(city, source, ends.target, airspace.blocked, price, cheapest=1.0, record=record)
 
-    route = plan(start, now)
+    route = plan(city.center_of(city.index_of(ends.source)), now)
     if callable(disturbance) and route.reached:
-        return replanned(route, now, plan, conditions_at, uav.cruise_speed, interval)
-    return named(
-        route, route.points, [Plan(0.0, tuple(route.points[:1].ravel().tolist()), now.name, now.safe_distance)]
-    )
+        return ends.added_to(replanned(route, now, plan, conditions_at, uav.cruise_speed, interval), city)
+    place = tuple(route.points[:1].ravel().tolist())
+    return ends.added_to(named(route, route.points, [Plan(0.0, place, now.name, now.safe_distance)]), city)
 
 
 def replanned(
@@ -184,18 +192,17 @@ def replanned(
     return named(replace(route, info=route.info | {"expanded": expanded, "elapsed": elapsed}), flown, plans)
 
 
-def refuse_swallowed(
-    city: City, name: str, point: npt.ArrayLike, safe_distance: float, mean_offset: tuple[float, ...]
-) -> None:
+def refuse_swallowed(city: City, name: str, node: int, safe_distance: float, mean_offset: tuple[float, ...]) -> None:
     """`ValueError` if a start or goal lies in the zone; it says by how much and which point would do."""
-    index = tuple(city.cell_of(point))
+    index = tuple(city.index_of(node))
+    point = city.center_of(index)
     widened = max(0.0, -float(city.wall_normal[index] @ mean_offset)) if any(mean_offset) else 0.0
     short = safe_distance + widened - float(city.clearance[index])
     if short > 1e-9 * city.cell:
         outside = city.clearance >= safe_distance + city.towards_wall(mean_offset) - 1e-9 * city.cell
         instead = "no voxel of the map keeps it"
         if outside.any():
-            instead = nearest_allowed(city, np.asarray(point, dtype=float), outside)
+            instead = nearest_allowed(city, point, outside)
         needed = f"D_min of {safe_distance:g} m" + (f" and {widened:.2f} m of mean offset" if widened else "")
         raise ValueError(
             f"{name} {checks.show(point)} is {city.clearance[index]:.2f} m from the nearest obstacle, {short:.2f} m "
@@ -296,7 +303,7 @@ def repare_price(
     Returns
     -------
     (nx, ny, nz) array
-        For `astar(..., price=...)` and `shortcut(..., price=...)`; copy it before you change it.
+        For `astar(..., price=...)` and `shortcut(..., price=...)`; not to be written to.
 
     Raises
     ------
@@ -326,4 +333,4 @@ def cached_price(
     if now.wind is not None:
         blown = now.push * city.towards_wall(now.wind) / max(float(np.linalg.norm(now.wind)), 1e-9)
     omega = penalty * (1 + pushed + force_weight * blown + load_weight * now.load_ratio)
-    return penalty_zone(city, reach, penalty=omega, shape=shape)
+    return locked(penalty_zone(city, reach, penalty=omega, shape=shape))

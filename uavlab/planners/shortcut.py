@@ -15,14 +15,22 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
-from uavlab.planners.grid import checked_price
+from uavlab.planners.question import checked_price
 from uavlab.route import Route
 
 ROUNDING = 1e-9
 """What is nearer than this [cells] touches; costs that differ by less are the same."""
 
 
-def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, min_clearance: float = 0.0) -> Route:
+def shortcut(
+    route: Route,
+    city: City,
+    *,
+    price: npt.ArrayLike | None = None,
+    min_clearance: float = 0.0,
+    min_height: float = 0.0,
+    max_height: float = np.inf,
+) -> Route:
     """The cheapest route over a subset of the waypoints.
 
     Parameters
@@ -34,6 +42,8 @@ def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, mi
         Cost of a metre in each voxel, the one that the route was planned with; a leg costs the integral along it.
     min_clearance : float
         Clearance [m] that no voxel touched by the route may fall below.
+    min_height, max_height : float
+        As for `astar` [m]. Vertical take-off and landing stay as they are.
 
     Returns
     -------
@@ -49,25 +59,27 @@ def shortcut(route: Route, city: City, *, price: npt.ArrayLike | None = None, mi
     if not route.reached or len(route.points) < 2:
         return route
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
-    points = (route.points - city.origin) / city.cell
-    blocked = city.blocked(min_clearance)
+    free = route.en_route
+    points = (free.points - city.origin) / city.cell
+    blocked = city.blocked(min_clearance, min_height=min_height, max_height=max_height)
     best, before = cheapest_subset(points, blocked, prices, cheapest)
     if not np.isfinite(best).all():
         leg = int(np.flatnonzero(~np.isfinite(best))[0])
         raise ValueError(
-            f"route passes through a blocked voxel between waypoints {leg - 1} {checks.show(route.points[leg - 1])} "
-            f"and {leg} {checks.show(route.points[leg])}: shorten only routes that themselves keep "
+            f"route passes through a blocked voxel between waypoints {leg - 1} {checks.show(free.points[leg - 1])} "
+            f"and {leg} {checks.show(free.points[leg])}: shorten only routes that themselves keep "
             f"min_clearance={min_clearance:g} m"
         )
     kept = [len(points) - 1]
     while kept[-1] != 0:
         kept.append(int(before[kept[-1]]))
-    return replace(
-        route,
-        points=route.points[kept[::-1]],
-        planner=f"{route.planner} + shortcut",
-        cost=float(best[-1]) * city.cell,
-    )
+    before_and_after = route.points[: route.takeoff], route.points[len(route.points) - route.landing :]
+    points = np.concatenate([before_and_after[0], free.points[kept[::-1]], before_and_after[1]])
+    vertical = replace(route, points=points[: route.takeoff + 1]), replace(route, points=points[-route.landing - 1 :])
+    cost = float(best[-1]) * city.cell
+    for part in vertical:
+        cost += part.length if prices is None else part.integral(city, prices)
+    return replace(route, points=points, planner=f"{route.planner} + shortcut", cost=cost)
 
 
 @compiled

@@ -18,7 +18,14 @@ from uavlab.optimizers import Result, bas, pso, pso_bas
 from uavlab.optimizers.particle_swarm import SWARM
 from uavlab.planners.ant_colony import ANTS, ant_colony
 from uavlab.planners.curves import PER_SEGMENT, Measure, Task, breaches, task_of
-from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN, checked_limits, price_per_cell
+from uavlab.planners.least_risk import (
+    MAX_PITCH,
+    MAX_TURN,
+    checked_limits,
+    flyable_endpoints,
+    price_per_cell,
+    with_vertical_legs,
+)
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 
@@ -71,6 +78,8 @@ def waypoint_swarm(
     max_turn: float = MAX_TURN,
     max_pitch: float = MAX_PITCH,
     min_clearance: float = 0.0,
+    min_height: float | None = None,
+    max_height: float = np.inf,
     **settings: Any,
 ) -> Route:
     """A route of low cost along a few waypoints that a swarm moves (PSO-BAS section 4).
@@ -79,7 +88,7 @@ def waypoint_swarm(
 
     Parameters
     ----------
-    risk_map, start, goal, risk, length, threat, max_pitch, min_clearance
+    risk_map, start, goal, risk, length, threat, max_pitch, min_clearance, min_height, max_height
         As for `least_risk`.
     rng : numpy.random.Generator or int
         Or a seed for one.
@@ -135,21 +144,22 @@ def waypoint_swarm(
     checks.number("refinement", refinement)
     if not 0 <= refinement < 1:
         raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
-    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     price = price_per_cell(risk_map, risk, length, threat, drift=False)
-    task = task_of(risk_map, start, goal, price, limits, curve == "spline")
+    ends = flyable_endpoints(risk_map, start, goal, limits)
+    task = task_of(risk_map, ends, price, limits, curve == "spline")
     space = space_of(task, waypoints, encoding)
     swarm = 1 if optimizer == "bas" else settings.get("swarm", SWARM)
     ants, left, last = shares(budget, optimizer, arcs, refinement, swarm)
     measure = Measure(task)
     if ants:
         walked = ant_colony(
-            risk_map, start, goal, rng=rng, budget=ants, risk=risk, length=length, threat=threat,
-            max_turn=max_turn, max_pitch=max_pitch, min_clearance=min_clearance,
+            risk_map, start, goal, rng=rng, budget=ants, risk=risk, length=length, threat=threat, max_turn=max_turn,
+            max_pitch=max_pitch, min_clearance=min_clearance, min_height=min_height, max_height=max_height,
         )  # fmt: skip
         measure.note(walked.info["history"], walked.info["iterations"])
         initial = walked if walked.reached else initial
-    begin = None if initial is None else near(task, initial, risk_map, waypoints)
+    begin = None if initial is None else near(task, initial.en_route, risk_map, waypoints)
     first = first_vectors(measure, space, arcs, begin, rng)
     if len(first):
         settings = {"start": first[:swarm], **settings}
@@ -161,7 +171,7 @@ def waypoint_swarm(
     measure.iterations += (before + found.iterations).tolist()
     if last:
         move_finer(measure, space, found, last, rng)
-    route = route_of(measure, risk_map, f"{optimizer} waypoints")
+    route = with_vertical_legs(route_of(measure, risk_map, f"{optimizer} waypoints"), risk_map.city, ends, price)
     if ants and walked.cost < route.cost:
         route = replace(walked, planner=route.planner, info={"control": walked.points})
     info = {
@@ -189,6 +199,8 @@ def refine(
     max_turn: float = MAX_TURN,
     max_pitch: float = MAX_PITCH,
     min_clearance: float = 0.0,
+    min_height: float | None = None,
+    max_height: float = np.inf,
 ) -> Route:
     """A better curve near a route: control points of a B-spline, two voxels apart, moved one by one while it gains.
 
@@ -196,7 +208,7 @@ def refine(
 
     Parameters
     ----------
-    risk_map, risk, length, threat, max_turn, max_pitch, min_clearance
+    risk_map, risk, length, threat, max_turn, max_pitch, min_clearance, min_height, max_height
         As for `waypoint_swarm`.
     route : Route
         From the centre of a voxel to that of another; of a planner.
@@ -222,18 +234,20 @@ def refine(
     if not route.reached or len(route.points) < 2:
         raise ValueError(f"route must lead from a start to a goal, it doesn't: {route.reason or 'no leg'}")
     checks.whole("budget", budget, least=4)
-    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance)
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     price = price_per_cell(risk_map, risk, length, threat, drift=False)
-    task = task_of(risk_map, route.points[0], route.points[-1], price, limits, True)
-    measure = Measure(task)
+    ends = flyable_endpoints(risk_map, route.points[0], route.points[-1], limits)
+    task = task_of(risk_map, ends, price, limits, True)
+    measure, route = Measure(task), route.en_route
     count = max(int(route.length / risk_map.city.cell / SPACING), 2) + 1
     one_by_one(measure, near(task, route, risk_map, count - 2), PER_SEGMENT // 2, budget, rng)
     better = route_of(measure, risk_map, f"{route.planner} + refined")
     cost = route.integral(risk_map.city, task.terrain.price) / risk_map.city.cell
     info = {"evaluations": budget, "history": np.minimum(measure.history, cost), "elapsed": time.perf_counter() - began}
     if better.cost < cost:
-        return replace(better, info={**better.info, **info})
-    return replace(route, cost=cost, info={**route.info, **info})
+        route, cost = better, better.cost
+    route = replace(route, cost=cost, info={**route.info, **info})
+    return with_vertical_legs(route, risk_map.city, ends, price)
 
 
 class Space(NamedTuple):

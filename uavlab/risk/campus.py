@@ -26,7 +26,7 @@ ROADS = (37.5, 75.0, 112.5)
 ROAD_WIDTH, BELT = 6.0, 3.0
 """Width of the roads, both ways, and of the belt of trees on each side [m]."""
 
-LOWEST_HEIGHT = 5.0
+MIN_HEIGHT = 5.0
 """No flight below this height above the ground [m]."""
 
 KINDS = {"yard": (0.25, 0.5), "park": (0.5, 0.5), "lawn": (0.0, 0.9), "square": (0.0, 1.6), "industry": (1.0, 0.6)}
@@ -141,5 +141,5 @@ def campus(zones: Sequence[dict[str, Any]], crowds: np.ndarray, cell: float, nam
         people * POPULATION_DENSITY / people.mean(),
         shelter,
         np.where(built, 0.0, road_layer(city, lines, ROAD_WIDTH)),
-        lowest_height=LOWEST_HEIGHT,
+        min_height=MIN_HEIGHT,
     )

@@ -212,7 +212,7 @@ def checked_reference(city: City) -> tuple[float, float]:
             f"geographic=True needs a projection, but {city.name!r} doesn't know where on Earth it lies: read it from "
             "a file in degrees, set City.reference to the (longitude, latitude) of x = y = 0, or give metres"
         )
-    return city.reference
+    return city.reference[:2]
 
 
 def per_line(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:

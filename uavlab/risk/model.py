@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.model import locked
 from uavlab.risk.drift import landing_rate
 from uavlab.risk.rates import check_density, person_rate, vehicle_rate
 from uavlab.risk.threat import building_threat
@@ -36,8 +37,8 @@ class RiskMap:
         What falls down; at its cruise speed.
     safe_height : float
         H_safe [m], the least height above the roof or ground below.
-    lowest_height : float
-        Least height above the ground, whatever is below [m].
+    min_height : float
+        Least height above the ground, whatever is below [m]; planners take it unless they are given another.
     as_printed : bool
         With the papers' fall speed (half the exponent).
 
@@ -54,7 +55,7 @@ class RiskMap:
     vehicle_share: np.ndarray = 0.0  # type: ignore[assignment]
     uav: UAV = RISK_QUADROTOR
     safe_height: float = SAFE_HEIGHT
-    lowest_height: float = 0.0
+    min_height: float = 0.0
     as_printed: bool = False
 
     def __post_init__(self) -> None:
@@ -65,7 +66,7 @@ class RiskMap:
         check_density(self.population_density)
         checks.within("shelter", self.shelter, 0.0, 1.0, "(0 none, 1 industry)")
         checks.within("vehicle_share", self.vehicle_share, 0.0, 1.0, "of the ground")
-        for name in ("safe_height", "lowest_height"):
+        for name in ("safe_height", "min_height"):
             checks.not_negative_number(name, getattr(self, name))
 
     def __repr__(self) -> str:
@@ -94,8 +95,8 @@ class RiskMap:
 
     @cached_property
     def flyable(self) -> np.ndarray:
-        """Free voxels that are `safe_height` above what lies below and `lowest_height` above the ground, bool."""
-        return high_enough(self.city, self.safe_height, self.lowest_height)
+        """Free voxels that are `safe_height` above what lies below and `min_height` above the ground, bool."""
+        return locked(high_enough(self.city, self.safe_height) & ~self.city.blocked(min_height=self.min_height))
 
     @cached_property
     def rate_ahead(self) -> np.ndarray:
@@ -172,15 +173,9 @@ class RiskMap:
         return route.integral(self.city, self.rate) / (3600 * speed)
 
 
-def high_enough(city: City, safe_height: float, lowest_height: float) -> np.ndarray:
-    """Free voxels that are high enough above what lies below and above the ground, (nx, ny, nz) bool."""
-    above_surface = city.height_above_surface >= safe_height - 1e-9
-    return ~city.occupied & above_surface & (heights_above_ground(city) >= lowest_height - 1e-9)
-
-
-def heights_above_ground(city: City) -> np.ndarray:
-    """Heights of the centres of each layer above the floor of the map, (nz,) [m]."""
-    return city.cell * (np.arange(city.shape[2]) + 0.5)
+def high_enough(city: City, safe_height: float) -> np.ndarray:
+    """Free voxels that are high enough above what lies below, (nx, ny, nz) bool."""
+    return ~city.occupied & (city.height_above_surface >= safe_height - 1e-9)
 
 
 def check_route(route: Route) -> None:

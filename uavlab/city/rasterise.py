@@ -1,0 +1,108 @@
+"""From solids to voxels: what a building, a terrain or a zone occupies, and how high the surface below each voxel is.
+
+Two rules. "touched": a voxel is occupied when a building reaches into it, so what is free is free. "centres": when its
+centre lies in one, the papers' rule, which loses what is thinner than a voxel.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from uavlab.city.buildings import FACE_TOLERANCE, Building, Hull
+from uavlab.city.columns import fill, widen
+
+TOUCH = 1e-6
+"""What reaches less far into a voxel [m] only touches it: rounding of coordinates, not thickness."""
+
+RULES = ("touched", "centres")
+
+
+class Ranges(NamedTuple):
+    """How low and how high a convex solid reaches in the columns of a window; low is above high where it doesn't."""
+
+    window: tuple[slice, slice]
+    low: np.ndarray  # [m]
+    high: np.ndarray
+
+
+def ranges_of(triangles: np.ndarray, shape: Sequence[int], cell: float, origin: np.ndarray) -> Ranges:
+    """Heights of the surface (T, 3, 3) [m] of a convex solid, or of a terrain, in the columns that it reaches into."""
+    plan = (triangles[..., :2] - origin[:2]) / cell
+    first = np.clip(np.floor(plan.min(axis=(0, 1))).astype(int), 0, shape[:2])
+    last = np.clip(np.ceil(plan.max(axis=(0, 1))).astype(int), first, shape[:2])
+    low, high = np.full(last - first, np.inf), np.full(last - first, -np.inf)
+    widen(np.concatenate([plan - first, triangles[..., 2:]], axis=2), TOUCH / cell, low, high)
+    return Ranges((slice(first[0], last[0]), slice(first[1], last[1])), low, high)
+
+
+def rasterise(hulls: Iterable[Hull], occupied: np.ndarray, cell: float, origin: np.ndarray, rule: str) -> None:
+    """Mark the voxels of convex pieces, in place; what sticks out of the map is cut off."""
+    for hull in hulls:
+        if rule == "centres":
+            mark_centres(hull, occupied, cell, origin)
+        else:
+            window, low, high = ranges_of(hull.triangles, occupied.shape, cell, origin)
+            fill(occupied[window], (low - origin[2]) / cell, (high - origin[2]) / cell, TOUCH / cell)
+
+
+def mark_centres(hull: Hull, occupied: np.ndarray, cell: float, origin: np.ndarray) -> None:
+    """Mark the voxels whose centres lie in a convex piece, in place."""
+    low = np.clip(np.floor((hull.points.min(axis=0) - origin) / cell - 0.5).astype(int), 0, occupied.shape)
+    high = np.clip(np.ceil((hull.points.max(axis=0) - origin) / cell + 0.5).astype(int), 0, occupied.shape)
+    x, y, z = np.ix_(*(origin[a] + cell * (np.arange(low[a], high[a]) + 0.5) for a in range(3)))
+    inside = np.ones(high - low, dtype=bool)
+    for a, b, c, d in hull.equations:  # one face after the other, as in Building.contains, for memory's sake
+        inside &= a * x + b * y + c * z + d <= FACE_TOLERANCE
+    occupied[low[0] : high[0], low[1] : high[1], low[2] : high[2]] |= inside
+
+
+def mark_ground(occupied: np.ndarray, top: np.ndarray, cell: float, bottom: float) -> None:
+    """Mark the voxels that a terrain with highest points (nx, ny) [m] reaches into, in place."""
+    highest = (top - bottom) / cell
+    fill(occupied, np.minimum(highest, 0.0) - 1.0, highest, TOUCH / cell)
+
+
+def raise_surface(building: Building, surface: np.ndarray, levels: np.ndarray, cell: float, origin: np.ndarray) -> None:
+    """Raise the surface below each centre (nx, ny, nz) to the highest point of the building there, in place.
+
+    Highest within the column, and not above the centre: a centre within the building has its surface at its own height.
+    """
+    for hull in building.hulls:
+        (i, j), low, high = ranges_of(hull.triangles, surface.shape, cell, origin)
+        below = np.where(levels >= low[..., None], np.minimum(high[..., None], levels), -np.inf)
+        np.maximum(surface[i, j], below, out=surface[i, j])
+
+
+def range_of_ground(ground: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest point of the ground in each column (nx, ny) [m], bilinear between the columns' centres."""
+    padded = np.pad(ground, 1, mode="edge")
+    along_x = (padded[:-1] + padded[1:]) / 2  # in the middle of the west and east sides
+    along_y = (padded[:, :-1] + padded[:, 1:]) / 2
+    corners = (along_x[:, :-1] + along_x[:, 1:]) / 2
+    there = [
+        ground,
+        along_x[:-1, 1:-1], along_x[1:, 1:-1], along_y[1:-1, :-1], along_y[1:-1, 1:],
+        corners[:-1, :-1], corners[1:, :-1], corners[:-1, 1:], corners[1:, 1:],
+    ]  # fmt: skip
+    return np.min(there, axis=0), np.max(there, axis=0)
+
+
+def bilinear(ground: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Heights of the ground at places (..., 2) counted in columns from the corner of the map."""
+    at = np.clip(columns - 0.5, 0.0, np.array(ground.shape) - 1.0)
+    i, j = np.moveaxis(np.minimum(at.astype(int), np.maximum(np.array(ground.shape) - 2, 0)), -1, 0)
+    x, y = at[..., 0] - i, at[..., 1] - j
+    east, north = np.minimum(i + 1, ground.shape[0] - 1), np.minimum(j + 1, ground.shape[1] - 1)
+    south_side = (1 - x) * ground[i, j] + x * ground[east, j]
+    north_side = (1 - x) * ground[i, north] + x * ground[east, north]
+    return (1 - y) * south_side + y * north_side
+
+
+def touches(building: Building, shape: Sequence[int], cell: float, origin: np.ndarray) -> np.ndarray:
+    """Which columns of a map a building reaches into, (nx, ny) bool."""
+    columns = np.zeros(tuple(shape[:2]), dtype=bool)
+    for hull in building.hulls:
+        window, low, high = ranges_of(hull.triangles, shape, cell, origin)
+        columns[window] |= low < high
+    return columns

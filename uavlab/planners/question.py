@@ -1,0 +1,174 @@
+"""What all planners share: where a route may be, where it begins and ends, and vertical take-off and landing.
+
+A route keeps `min_clearance` to obstacles and flies between `min_height` and `max_height` above ground, out of no-fly
+zones. A start or a goal below `min_height` is left and reached vertically: the planner looks for a way from the first
+voxel above it that is high enough, and the vertical legs are added to what it finds.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.route import Route
+
+
+class Airspace(NamedTuple):
+    """Where a route may be."""
+
+    city: City
+    min_clearance: float = 0.0
+    min_height: float = 0.0
+    max_height: float = np.inf
+    flyable: np.ndarray | None = None
+    """Of a risk map: the voxels that are high enough above roofs."""
+
+    @property
+    def blocked(self) -> np.ndarray:
+        """Where it may not be, (nx, ny, nz) bool."""
+        city, clearance, low, high, flyable = self
+        blocked = city.blocked(clearance, min_height=low, max_height=high)
+        return blocked if flyable is None else blocked | ~flyable
+
+
+class Ends(NamedTuple):
+    """Codes of the voxels between which a way is looked for, and of those passed vertically before and after."""
+
+    source: int
+    target: int
+    takeoff: tuple[int, ...] = ()
+    """From the start up to below the source; empty where the start is the source."""
+    landing: tuple[int, ...] = ()
+    """From below the target down to the goal."""
+
+    def added_to(self, route: Route, city: City, price: np.ndarray | None = None) -> Route:
+        """The route with its vertical legs; `price` (nx, ny, nz) per metre is charged for them, too."""
+        if not (self.takeoff or self.landing) or not len(route.points):
+            return route
+        before, after = (city.center_of(city.index_of(np.array(codes, int))) for codes in (self.takeoff, self.landing))
+        parts = [before, route.points, after] if route.reached else [before, route.points]
+        cost = route.cost
+        for codes in ((*self.takeoff, self.source), (self.target, *self.landing)):
+            prices = np.ones(len(codes)) if price is None else price.reshape(-1)[list(codes)]
+            cost += city.cell * float((prices[:-1] + prices[1:]).sum()) / 2
+        return replace(
+            route,
+            points=np.concatenate(parts),
+            cost=cost,
+            takeoff=len(before),
+            landing=len(after) if route.reached else 0,
+        )
+
+
+def endpoints(airspace: Airspace, start: npt.ArrayLike, goal: npt.ArrayLike) -> Ends:
+    """Where a way is to be looked for; `ValueError` if start or goal can't be flown from or to, or both are one."""
+    city = airspace.city
+    checks.instance("city", city, City)
+    blocked = airspace.blocked
+    source, takeoff = end_at(airspace, blocked, start, "start")
+    target, landing = end_at(airspace, blocked, goal, "goal")
+    if (takeoff or (source,))[0] == (landing or (target,))[0]:
+        raise ValueError(
+            f"start {checks.show(start)} and goal {checks.show(goal)} lie in the same voxel: "
+            f"there is no route to plan; choose a goal at least one cell ({city.cell:g} m) away"
+        )
+    if source == target:
+        raise ValueError(
+            f"start {checks.show(start)} and goal {checks.show(goal)} lie above each other, below "
+            f"min_height={airspace.min_height:g} m, where only take-off and landing are allowed: ask for less"
+        )
+    return Ends(source, target, takeoff, landing[::-1])
+
+
+def end_at(airspace: Airspace, blocked: np.ndarray, point: npt.ArrayLike, argument: str) -> tuple[int, tuple[int, ...]]:
+    """The code of the voxel at a start or a goal, or above it; and those below, from the point upwards.
+
+    Raises
+    ------
+    ValueError
+        If it isn't three finite numbers, lies outside of the map, in an obstacle or a no-fly zone, nearer to an
+        obstacle than `min_clearance`, or too high; the message names the argument, what is in the way, and the nearest
+        point that would do.
+    """
+    city, position = airspace.city, checked_position(airspace.city, point, argument)
+    i, j, k = city.cell_of(position)
+    wrong = what_blocks(airspace, blocked, position)
+    if not wrong:
+        return int(city.code_of((i, j, k))), ()
+    if wrong == TOO_LOW:
+        closed, column = city.blocked()[i, j], blocked[i, j]
+        top = k + int(np.argmin(np.append(column[k:], False)))
+        if not closed[k:top].any() and top < city.shape[2]:
+            codes = city.code_of([(i, j, level) for level in range(k, top + 1)]).tolist()
+            return codes[-1], tuple(codes[:-1])
+        wrong = f"{TOO_LOW}={airspace.min_height:g} m, and there is no free way straight up from it"
+    raise ValueError(f"{argument} {checks.show(position)} {wrong}; {nearest_allowed(city, position, ~blocked)}")
+
+
+TOO_LOW = "lies below min_height"
+
+
+def what_blocks(airspace: Airspace, blocked: np.ndarray, position: np.ndarray) -> str:
+    """Why nobody may be at a point [m] of the map, in words; empty if one may; `TOO_LOW` if one may land there."""
+    city = airspace.city
+    index = tuple(city.cell_of(position))
+    if not blocked[index]:
+        return ""
+    if city.occupied[index]:
+        return f"lies in {city.building_at(position)}"
+    if city.no_fly and city.in_no_fly[index]:
+        return f"lies in no-fly zone {city.zone_at(position)!r}"
+    height = city.height_above_ground(position)
+    if city.out_of_heights(0.0, airspace.max_height)[index]:
+        return f"is {height:.1f} m above ground, max_height allows {airspace.max_height:g} m"
+    if city.out_of_heights(airspace.min_height, np.inf)[index]:
+        return TOO_LOW
+    clearance = city.clearance[index]
+    if clearance < airspace.min_clearance:
+        return f"is {clearance:.2f} m from the nearest obstacle, min_clearance asks for {airspace.min_clearance:g} m"
+    return f"is only {city.height_above_surface[index]:.1f} m above what lies below, safe_height asks for more"
+
+
+def checked_position(city: City, point: npt.ArrayLike, argument: str) -> np.ndarray:
+    """A start or a goal as three finite numbers on the map."""
+    position = checks.numbers(argument, point)
+    if position.shape != (3,):
+        raise ValueError(f"{argument} must be three numbers (x, y, z) in metres, got shape {position.shape}")
+    if not np.isfinite(position).all():
+        raise ValueError(f"{argument} must be finite, got {checks.show(position)}")
+    if not city.inside(position):
+        low, high = city.bounds
+        ranges = ", ".join(f"{a} {lo:g} to {hi:g}" for a, lo, hi in zip("xyz", low, high, strict=True))
+        raise ValueError(f"{argument} {checks.show(position)} lies outside of the map: {ranges} m")
+    return position
+
+
+def nearest_allowed(city: City, position: np.ndarray, allowed: np.ndarray) -> str:
+    """Words for the centre nearest to a position among allowed voxels (nx, ny, nz), looked for in boxes that grow."""
+    index = city.cell_of(position)
+    radius = 4
+    while True:
+        low, high = np.maximum(index - radius, 0), np.minimum(index + radius + 1, city.shape)
+        free = low + np.argwhere(allowed[low[0] : high[0], low[1] : high[1], low[2] : high[2]])
+        centers = city.center_of(free)
+        away = np.linalg.norm(centers - position, axis=1)
+        whole_map = (high - low == city.shape).all()
+        if away.min(initial=np.inf) < (np.inf if whole_map else radius * city.cell):
+            return f"the nearest free point is {checks.show(centers[away.argmin()])}"
+        if whole_map:
+            return "no voxel of the map is free"
+        radius *= 2
+
+
+def checked_price(city: City, price: npt.ArrayLike) -> tuple[np.ndarray, float]:
+    """A price per metre as a float array of the city's shape, and the cheapest."""
+    checked = np.ascontiguousarray(price, dtype=float)
+    if checked.shape != city.shape:
+        raise ValueError(f"price must have the city's shape {city.shape}, got {checked.shape}")
+    cheapest = float(checked.min())
+    if not 0 <= cheapest <= checked.max() < np.inf:  # NaN fails too
+        raise ValueError("price must be finite and at least 0 everywhere; use min_clearance to forbid voxels")
+    return checked, cheapest
