@@ -110,7 +110,7 @@ def random_map(rng):
         rng.choice((0, 0.25, 0.5, 0.75, 1), shape[:2]),
         rng.random(shape[:2]) * 1e-4 * (rng.random(shape[:2]) < 0.3),
         safe_height=rng.choice((0.0, 0.5, 1.0)) * cell,
-        lowest_height=rng.choice((0.0, 1.0)) * cell,
+        min_height=rng.choice((0.0, 1.0)) * cell,
     )
 
 
@@ -445,12 +445,12 @@ NOT_ARRIVING = {
     "level": (made_of(np.zeros((6, 6, 4), bool)), ((1, 1, 1), (11, 11, 7)), {"max_pitch": 0.0}, ["max_pitch=35.27°"]),
     "narrow": (tunnel(), ((1, 7, 3), (17, 7, 3)), {"min_clearance": 3.5}, ["min_clearance=3 m"]),
     "low": (tunnel(safe_height=4.0), THROUGH_THE_WALL, {}, ["safe_height=3 m"]),
-    "lower": (tunnel(lowest_height=4.0), THROUGH_THE_WALL, {}, ["lowest_height=3 m"]),
+    "lower": (tunnel(min_height=4.0), THROUGH_THE_WALL, {}, ["min_height=3 m"]),
     "either": (
-        corridor(basement=True, lowest_height=3.0),
+        corridor(basement=True, min_height=3.0),
         ((1, 1, 3), (11, 5, 3)),
         {},
-        ["max_turn=90°", "lowest_height=1 m"],
+        ["max_turn=90°", "min_height=1 m"],
     ),
     "bend, within a length": (corridor(), ROUND_THE_BEND, {"max_length": 14.0}, ["max_turn=90°"]),
     "bend, too far": (corridor(), ROUND_THE_BEND, {"max_length": 13.0}, ["max_turn=90° and max_length=14.00 m"]),
@@ -515,7 +515,7 @@ def test_every_named_cure_helps_on_random_maps(seed):
         assert not least_risk(risk_map, *ends, **(limits | {"max_length": length - 0.02})).reached
     elif not cures:
         assert route.reason.endswith("obstacles close every way")
-        assert not least_risk(replace(risk_map, safe_height=0.0, lowest_height=0.0), *ends, **ANY_LIMITS).reached
+        assert not least_risk(replace(risk_map, safe_height=0.0, min_height=0.0), *ends, **ANY_LIMITS).reached
 
 
 def test_maps_above_need_all_kinds_of_cures():
@@ -547,7 +547,7 @@ def test_front_that_no_route_leads_to_says_why():
 
 OPEN = made_of(np.zeros((8, 8, 4), bool))
 ENDS = (1.0, 1.0, 1.0), (15.0, 15.0, 7.0)
-HIGH = replace(OPEN, safe_height=2.5, lowest_height=4.0)
+HIGH = replace(OPEN, safe_height=2.5, min_height=4.0)
 BOTH = (least_risk, pareto_front)
 
 
@@ -604,11 +604,11 @@ def test_a_city_is_no_risk_map(ask):
 def test_ends_that_may_not_be_flown_are_told_why_and_where_one_may(ask):
     too_low = (
         r"start \(1.0, 1.0, 1.0\) is too low: its voxel's centre is 1.0 m above what lies below, safe_height asks for "
-        r"2.5 m and lowest_height for 4 m above the ground; the nearest free point is \(1.0, 1.0, 5.0\)"
+        r"2.5 m and min_height for 4 m above the ground; the nearest free point is \(1.0, 1.0, 5.0\)"
     )
     refuses(ask, too_low, HIGH, *ENDS)
     refuses(ask, "goal .* is too low", HIGH, *ENDS[::-1])
-    refuses(ask, "start .* no voxel of the map is free", replace(OPEN, lowest_height=99.0), *ENDS)
+    refuses(ask, "start .* no voxel of the map is free", replace(OPEN, min_height=99.0), *ENDS)
     house = Building.prism([(4, 4), (8, 4), (8, 8), (4, 8)], 6.0, name="town hall")
     town = RiskMap(City.from_buildings([house], cell=2.0, origin=(0, 0, 0), size=(16, 16, 12)), 0.01, 0.5)
     refuses(ask, "start .* lies in building 'town hall'", town, (6, 6, 3), (1, 1, 9))

@@ -5,7 +5,7 @@ import pytest
 
 from uavlab.planners import least_risk, pareto_front
 from uavlab.risk import CAMPUS_FLIGHT, POPULATION_DENSITY, random_campus, reference_campus
-from uavlab.risk.campus import LOWEST_HEIGHT
+from uavlab.risk.campus import MIN_HEIGHT
 from uavlab.risk.layers import column_centers
 
 CELLS = [5.0, 2.0]
@@ -35,7 +35,7 @@ def test_reference_campus(cell):
     assert campus.city.bounds.tolist() == [[0, 0, 0], [150, 150, 80]]
     assert campus.city.name == "reference campus"
     assert campus.population_density.mean() == pytest.approx(POPULATION_DENSITY, rel=1e-12)
-    assert campus.lowest_height == LOWEST_HEIGHT
+    assert campus.min_height == MIN_HEIGHT
     assert not campus.as_printed
     assert_flyable(campus)
     assert max(building.bounds[1, 2] for building in campus.city.buildings) == 60

@@ -179,8 +179,8 @@ def test_routes_of_no_length_cost_nothing():
         assert LAYERED.integral(route) == LAYERED.cell_sum(route) == LAYERED.fatalities(route) == 0
 
 
-def test_one_flies_above_safe_and_lowest_height():
-    risk_map = RiskMap(TOWN, 0.03, 0.5, safe_height=7.5, lowest_height=12.5)
+def test_one_flies_above_safe_and_min_height():
+    risk_map = RiskMap(TOWN, 0.03, 0.5, safe_height=7.5, min_height=12.5)
     roof = np.zeros((12, 10), bool)
     roof[4:6, 4:6] = True
     level = 5 * np.arange(8) + 2.5
@@ -199,7 +199,7 @@ def test_by_default_one_flies_three_metres_above_what_lies_below():
 
 
 def test_heights_count_from_the_floor_of_the_map():
-    known = RiskMap(TOWN, 0.03, 0.5, lowest_height=10.0)
+    known = RiskMap(TOWN, 0.03, 0.5, min_height=10.0)
     moved = RiskMap(
         City.from_buildings(
             [Building.prism([(-80, 27), (-70, 27), (-70, 37), (-80, 37)], 345.5, bottom=333)],
@@ -209,7 +209,7 @@ def test_heights_count_from_the_floor_of_the_map():
         ),
         0.03,
         0.5,
-        lowest_height=10.0,
+        min_height=10.0,
     )
     assert np.array_equal(moved.flyable, known.flyable)
     assert moved.rate == pytest.approx(known.rate, rel=1e-9)
@@ -310,7 +310,7 @@ NOWHERE = Route(np.empty((0, 3)), reached=False, reason="walled in")
         (lambda: RiskMap(FLAT, 0.03, 0.5, safe_height=-3), "safe_height must be finite and at least 0, got -3"),
         (lambda: RiskMap(FLAT, 0.03, 0.5, safe_height="3"), "safe_height must be a number .* got text"),
         (lambda: RiskMap(FLAT, 0.03, 0.5, safe_height=[1, 2]), "safe_height must be one number"),
-        (lambda: RiskMap(FLAT, 0.03, 0.5, lowest_height=np.nan), "lowest_height must be finite and at least 0"),
+        (lambda: RiskMap(FLAT, 0.03, 0.5, min_height=np.nan), "min_height must be finite and at least 0"),
         (lambda: LAYERED.integral(OUTSIDE), "the route leaves the map"),
         (lambda: LAYERED.cell_sum(OUTSIDE), "the route leaves the map"),
         (lambda: LAYERED.fatalities(OUTSIDE), "the route leaves the map"),
