@@ -259,7 +259,8 @@ class City:
             for building in self.buildings:
                 raise_surface(building, surface, levels, self.cell, self.origin)
         else:
-            tops = np.where(self.occupied, levels + self.cell / 2, surface)
+            above_ground = levels - self.cell / 2 >= self.range_of_ground[1][..., None]
+            tops = np.where(self.occupied & above_ground, levels + self.cell / 2, surface)
             surface = np.maximum.accumulate(tops, axis=2)
         return locked(surface)
 
