@@ -100,8 +100,9 @@ def test_maps_above_ask_for_all_kinds_of_routes():
 def test_halves_that_are_planned_anew_fit_together(seed, splits, turn, pitch):
     """Long pieces in an open space, where the joints of splits lie at any heading, before and after vertical legs."""
     rng = np.random.default_rng(seed)
-    city = City(rng.random((9, 9, 5)) < 0.08, 2.0)
-    city.occupied[0, 0, 0] = city.occupied[8, 8, 4] = False
+    occupied = rng.random((9, 9, 5)) < 0.08
+    occupied[0, 0, 0] = occupied[8, 8, 4] = False
+    city = City(occupied, 2.0)
     risk_map = RiskMap(city, 10 ** rng.uniform(-4, -1.5, (9, 9)), 0.5, safe_height=0.0)
     limits = {"max_turn": np.radians(turn), "max_pitch": np.radians(pitch)}
     ends = city.center_of([(0, 0, 0), (8, 8, 4)])
@@ -219,7 +220,7 @@ def test_maps_above_have_ants_that_arrive_and_ants_that_get_stuck():
 
 
 def query_and_look(risk_map, ends, habits):
-    limits = module.checked_limits(risk_map, module.MAX_TURN, module.MAX_PITCH, 0.0)
+    limits = module.checked_limits(risk_map, module.MAX_TURN, module.MAX_PITCH, 0.0, None, np.inf)
     price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
     query = module.query_of(risk_map, price, *(code(risk_map, end) for end in ends), limits)
     return query, module.attraction(query, habits, True)
@@ -343,8 +344,9 @@ def test_a_route_too_short_to_split_is_searched_once_more():
 def test_ants_that_find_nothing_at_first_go_on_looking():
     """A maze that one ant in hundreds gets through: those of later splits arrive where the first ones didn't."""
     rng = np.random.default_rng(0)
-    risk_map = made_of(rng.random((14, 14, 1)) < 0.25)
-    risk_map.city.occupied[0, 0] = risk_map.city.occupied[13, 13] = False
+    occupied = rng.random((14, 14, 1)) < 0.25
+    occupied[0, 0] = occupied[13, 13] = False
+    risk_map = made_of(occupied)
     late = 0
     for seed in range(20):
         options = {"beta": 0.0, "gamma": 0.0, "ants": 5, "max_turn": np.pi / 2}
@@ -487,8 +489,8 @@ def test_ends_that_make_no_question_are_refused():
     house = Building.prism([(4, 4), (8, 4), (8, 8), (4, 8)], 6.0, name="town hall")
     town = RiskMap(City.from_buildings([house], cell=2.0, origin=(0, 0, 0), size=(16, 16, 12)), 0.01, 0.5)
     refuses("start .* lies in building 'town hall'", town, ((6, 6, 3), (1, 1, 9)))
-    refuses("goal .* is too low", town, ((1, 1, 9), (6, 6, 7)))
-    refuses("start .* is too low", replace(BAD, safe_height=2.5))
+    refuses("goal .* is 1.0 m above what lies below", town, ((1, 1, 9), (6, 6, 7)))
+    refuses("start .* is 1.0 m above what lies below", replace(BAD, safe_height=2.5))
     refuses("start must be finite", ends=((np.nan, 1, 1), ENDS[1]))
     refuses("lie in the same voxel", ends=(ENDS[0], ENDS[0]))
     refuses("goal .* lies outside of the map", ends=(ENDS[0], (99, 1, 1)))

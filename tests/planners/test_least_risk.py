@@ -109,7 +109,7 @@ def random_map(rng):
         10 ** rng.uniform(-4, -1.5, shape[:2]) * (rng.random(shape[:2]) >= 0.2),
         rng.choice((0, 0.25, 0.5, 0.75, 1), shape[:2]),
         rng.random(shape[:2]) * 1e-4 * (rng.random(shape[:2]) < 0.3),
-        safe_height=rng.choice((0.0, 0.5, 1.0)) * cell,
+        safe_height=rng.choice((0.0, 1.0, 2.0)) * cell,
         min_height=rng.choice((0.0, 1.0)) * cell,
     )
 
@@ -233,7 +233,7 @@ def test_sixty_degrees_allow_45_and_no_more():
     ],
 )
 def test_tighter_limits_never_cost_less(limit, values):
-    costs = [least_risk(campus(0), *CAMPUS_FLIGHT, **{"max_turn": np.pi, limit: value}).cost for value in values]
+    costs = [least_risk(campus(1), *CAMPUS_FLIGHT, **{"max_turn": np.pi, limit: value}).cost for value in values]
     assert costs[0] <= costs[1] <= costs[2]
     assert costs[0] < costs[2] * 0.99
 
@@ -253,7 +253,7 @@ def test_looking_back_from_the_goal_saves_four_expansions_of_five():
 @pytest.mark.parametrize("number", range(8))
 def test_second_search_walks_almost_straight_to_the_goal(number):
     risk_map = campus(number)
-    limits = module.checked_limits(risk_map, module.MAX_TURN, module.MAX_PITCH, 0.0)
+    limits = module.checked_limits(risk_map, module.MAX_TURN, module.MAX_PITCH, 0.0, None, np.inf)
     price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
     query = module.query_of(risk_map, price, *(code(risk_map, end) for end in CAMPUS_FLIGHT), limits)
     _, nodes = module.rest_of_cost(query, query.source, open_list(query.blocked.size))
@@ -296,8 +296,9 @@ def tradeoffs(moves, price, lengths, source, target):
 def constrained_case(seed):
     """A tiny map, with all its trade-offs between risk and length [m]; some cannot be crossed."""
     rng = np.random.default_rng(seed)
-    city = City(rng.random((5, 5, 3)) < rng.choice((0.05, 0.25)), rng.uniform(0.5, 5), rng.uniform(-100, 100, 3))
-    city.occupied[0, 0, 1] = city.occupied[4, 4, 1] = False
+    occupied = rng.random((5, 5, 3)) < rng.choice((0.05, 0.25))
+    occupied[0, 0, 1] = occupied[4, 4, 1] = False
+    city = City(occupied, rng.uniform(0.5, 5), rng.uniform(-100, 100, 3))
     risk_map = RiskMap(city, 10 ** rng.uniform(-4, -1.5, (5, 5)), rng.choice((0, 0.5, 1), (5, 5)), safe_height=0.0)
     limits = {
         "max_turn": np.radians(rng.choice((45, 90, 180))),
@@ -547,7 +548,7 @@ def test_front_that_no_route_leads_to_says_why():
 
 OPEN = made_of(np.zeros((8, 8, 4), bool))
 ENDS = (1.0, 1.0, 1.0), (15.0, 15.0, 7.0)
-HIGH = replace(OPEN, safe_height=2.5, min_height=4.0)
+HIGH = replace(OPEN, safe_height=2.5)
 BOTH = (least_risk, pareto_front)
 
 
@@ -603,16 +604,21 @@ def test_a_city_is_no_risk_map(ask):
 @pytest.mark.parametrize("ask", BOTH)
 def test_ends_that_may_not_be_flown_are_told_why_and_where_one_may(ask):
     too_low = (
-        r"start \(1.0, 1.0, 1.0\) is too low: its voxel's centre is 1.0 m above what lies below, safe_height asks for "
-        r"2.5 m and min_height for 4 m above the ground; the nearest free point is \(1.0, 1.0, 5.0\)"
+        r"start \(1.0, 1.0, 1.0\) is 1.0 m above what lies below, safe_height asks for 2.5 m; "
+        r"the nearest free point is \(1.0, 1.0, 3.0\)"
     )
     refuses(ask, too_low, HIGH, *ENDS)
-    refuses(ask, "goal .* is too low", HIGH, *ENDS[::-1])
-    refuses(ask, "start .* no voxel of the map is free", replace(OPEN, min_height=99.0), *ENDS)
+    refuses(ask, "goal .* is 1.0 m above what lies below", HIGH, *ENDS[::-1])
+    refuses(
+        ask,
+        "start .* lies below min_height=99 m, .* no voxel of the map is free",
+        replace(OPEN, min_height=99.0),
+        *ENDS,
+    )
     house = Building.prism([(4, 4), (8, 4), (8, 8), (4, 8)], 6.0, name="town hall")
     town = RiskMap(City.from_buildings([house], cell=2.0, origin=(0, 0, 0), size=(16, 16, 12)), 0.01, 0.5)
     refuses(ask, "start .* lies in building 'town hall'", town, (6, 6, 3), (1, 1, 9))
-    refuses(ask, r"goal \(6.0, 6.0, 7.0\) is too low: its voxel's centre is 1.0 m above", town, (1, 1, 9), (6, 6, 7))
+    refuses(ask, r"goal \(6.0, 6.0, 7.0\) is 1.0 m above what lies below, safe_height asks", town, (1, 1, 9), (6, 6, 7))
     refuses(ask, "start .* is 1.00 m from the nearest obstacle", town, (3, 5, 5), (1, 1, 9), min_clearance=2.0)
 
 
@@ -665,7 +671,7 @@ def test_ends_may_lie_anywhere_in_their_voxels():
 @pytest.mark.parametrize("seed", [1, 3])
 def test_compiled_and_plain_python_agree(seed, drift):
     risk_map, ends, limits, best = constrained_case(seed)
-    kept = module.checked_limits(risk_map, limits["max_turn"], limits["max_pitch"], 0.0)
+    kept = module.checked_limits(risk_map, limits["max_turn"], limits["max_pitch"], 0.0, None, np.inf)
     price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, drift)
     query = module.query_of(risk_map, price, *(code(risk_map, end) for end in ends), kept)
     by_length, count = module.city_lengths(query), query.blocked.size

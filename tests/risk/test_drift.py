@@ -76,7 +76,9 @@ def test_it_may_rise_above_the_map_before_it_falls():
     low = marked(np.zeros((20, 3, 2), bool), 5.0)
     assert landing(low, (1, 1, 1), (1, 0, 1)) == landing(field(), (1, 1, 1), (1, 0, 1))
     assert landing(low, (1, 1, 1), (0, 0, 1)) == (1, 1)
-    low.city.occupied[:, 2] = True  # beside its way, and next to the air above it in memory
+    beside = np.zeros((20, 3, 2), bool)
+    beside[:, 2] = True  # beside its way, and next to the air above it in memory
+    low = marked(beside, 5.0)
     assert landing(low, (1, 1, 1), (1, 0, 1)) == landing(field(), (1, 1, 1), (1, 0, 1))
 
 

@@ -1,30 +1,45 @@
-"""Footprints with heights from GeoJSON, in degrees or in metres.
+"""Footprints with heights from GeoJSON, as exports of OpenStreetMap and of city registers have them.
 
-Longitude and latitude are projected onto the plane that touches the Earth at the south-west corner of the buildings;
-metres counted from far away are shifted there. An outline that crosses itself or a height that is missing is refused
-with its place in the file and a cure: a building left out in silence is one that a UAV flies into.
+Where a height stands, how it is written, and in which system the coordinates are, differs from file to file. What can
+be understood is; what has to be assumed is said in `City.source`, and in one warning; what can't be known is asked for.
 """
 
-import json
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 
-from uavlab.city.buildings import Building, convex_parts, extrude, footprint_polygon
-from uavlab.city.documents import count, lowest_corner, read_json
+from uavlab import checks
+from uavlab.city.buildings import Building, convex_parts, extrude
+from uavlab.city.documents import count, lowest_corner, progress, read_json
+from uavlab.city.footprints import (
+    BUILDING,
+    OTHER,
+    PART,
+    Footprint,
+    features_of,
+    footprints_of,
+    kinds_of,
+    rest_of,
+    without_parts,
+)
+from uavlab.city.lengths import length_in_metres
 from uavlab.city.model import City
-from uavlab.city.place import Place
+from uavlab.city.place import Place, System, metres_per, system_for
+from uavlab.city.rasters import read_terrain
+from uavlab.city.source import Notes
+from uavlab.city.terrain import Terrain
+from uavlab.city.zones import NoFlyZone
 
-EQUATORIAL_RADIUS, FLATTENING = 6_378_137.0, 1 / 298.257223563
-"""The ellipsoid WGS84 [m, 1]."""
+STOREY_HEIGHT = 3.0
+"""Of a storey [m], where a file counts storeys."""
 
-WEB_MERCATOR = {3857, 3785, 102100, 900913}
-"""Codes of the projection of web maps. Its metres are too long, by 1/cos(latitude)."""
+ABOVE = ("auto", "ground", "sea")
+
+SAMPLES = 2.0
+"""Between the places at which the ground under a footprint is looked at [m]."""
 
 
 def read_geojson(
@@ -32,208 +47,360 @@ def read_geojson(
     *,
     height: str | float = "height",
     base: str | float = "min_height",
+    default_height: float | None = None,
+    storey_height: float = STOREY_HEIGHT,
+    heights_above: str = "auto",
+    height_unit: str | None = None,
+    crs: Any = None,
+    terrain: Terrain | str | Path | float | None = None,
     cell: float = 1.0,
     margin: float = 20.0,
-    units: str = "auto",
+    voxels: str = "touched",
+    no_fly: Sequence[NoFlyZone] = (),
 ) -> City:
     """Read footprints with heights from a GeoJSON file (RFC 7946), for example an export of OpenStreetMap.
 
-    Every feature with polygons becomes one building, a prism over each polygon without its holes; points and lines
-    are skipped. The ground is level at z = 0.
+    Every polygon of a building becomes a prism. In a file with OpenStreetMap's keys, other polygons are no buildings
+    unless they have a height, and parts (`building:part`) override the outline that they lie in. Broken outlines are
+    mended. x = y = 0 is the south-west corner of the buildings, z = 0 the lowest ground at one.
 
     Parameters
     ----------
     path : str or Path
-        UTF-8 text: a feature collection, a feature or a geometry; or one of these per line.
+        UTF-8 text: a feature collection, a feature or a geometry; or a sequence of these.
     height : str or float
-        Property that holds the height of the roof above ground [m], a number or a text like "12.5 m"; or one height
-        for all buildings [m], above 0.
+        Property that holds the height of the roof above ground, a number or a text like "12,5 m" or "40 ft"; one whose
+        name ends in "levels" counts storeys. Or one height for all buildings [m]. Where it says nothing, the height is
+        `building:levels` (or `num_floors`) times `storey_height`, plus that of the roof, else `default_height`.
     base : str or float
-        Property that holds the height of the underside [m], or one for all; where it is absent, 0. Above 0 the
-        building floats.
-    cell : float
-        Edge of a voxel [m], typically 0.5 to 5.
-    margin : float
-        Free space around and above the buildings [m].
-    units : {"auto", "degrees", "metres"}
-        Degrees are longitude and latitude on WGS84, projected onto the plane that touches the ellipsoid at the
-        south-west corner, which `City.reference` names. Metres are shifted until this corner is x = y = 0, and
-        `City.reference` is None. "auto" takes metres where a coordinate is out of the range of degrees or the file has
-        a "crs" member with the EPSG code of a projection, else degrees.
+        Property that holds the height of the underside above ground, or one for all [m]; else `building:min_level` (or
+        `min_floor`) times `storey_height`, else 0. Above 0 the building floats.
+    default_height : float, optional
+        Of buildings whose height isn't known [m]; without it they are refused.
+    storey_height : float
+        [m], above 0.
+    heights_above : {"auto", "ground", "sea"}
+        What heights and bases are measured from. "sea": bases are the heights of the ground above the sea, and the
+        ground goes through them. "auto" takes that where most bases are 1 m and more.
+    height_unit : {"m", "ft", "us-ft"}, optional
+        Of heights without a unit; by default that of the reference system.
+    crs : anything that pyproj takes, or "local", optional
+        The reference system of the coordinates; by default the one that the file names, else degrees where they can
+        be, else metres from somewhere ("local") where they are small.
+    terrain : Terrain, path of one, or float, optional
+        The ground; a building then stands from the lowest ground under its footprint to its height above the highest,
+        which is the safe side. By default it is flat at z = 0.
+    cell, margin, voxels, no_fly
+        As for `City.from_buildings`.
+
+    Returns
+    -------
+    City
+        `source` says what was taken, mended, derived, assumed and left out.
 
     Raises
     ------
     ValueError
-        If the file is broken or has no polygon; an outline crosses itself; a height is missing or not above the base;
-        units were mistaken; or the map would have over 500 million voxels.
+        If the file is broken or has no polygon; a height is not known; the reference system is not known, or can't be
+        that of the coordinates; or the map would have over 500 million voxels.
+
+    Warns
+    -----
+    UserWarning
+        If anything was assumed or left out.
     """
-    if units not in ("auto", "degrees", "metres"):
-        raise ValueError(f"units must be 'auto', 'degrees' or 'metres', got {units!r}")
-    path = Path(path)
+    checks.positive_number("storey_height", storey_height)
+    if default_height is not None:
+        checks.positive_number("default_height", default_height)
+    checks.one_of("heights_above", heights_above, ABOVE)
+    path, notes = Path(path), Notes()
     documents = read_json(path)
     features = [feature for document in documents for feature in features_of(document, path)]
-    footprints = [footprint_of(feature, index) for index, feature in enumerate(features)]
-    footprints = [footprint for footprint in footprints if footprint.polygons]
+    footprints = footprints_of(features, notes)
     if not footprints:
-        kinds = count((feature.get("geometry") or {}).get("type") for feature in features)
+        kinds = count(kind_of_geometry(feature) for feature in features)
         raise ValueError(f"{path.name} has no polygon; its features are {kinds}")
-    heights = heights_above_base(footprints, height, base)
-    bounds = shapely.total_bounds([polygon for footprint in footprints for polygon in footprint.polygons])
-    degrees = in_degrees(bounds, documents[0].get("crs"), units)
-    corner = bounds[:2]
-
-    def local(points: np.ndarray) -> np.ndarray:
-        return east_north(points, corner) if degrees else points - corner
-
-    buildings = []
-    for footprint, (bottom, top) in zip(footprints, heights, strict=True):
-        parts = [part for polygon in footprint.polygons for part in convex_parts(shapely.transform(polygon, local))]
-        buildings.append(Building(tuple(extrude(part, bottom, top) for part in parts), footprint.name))
-    taken, other = ("degrees", "metres") if degrees else ("metres", "degrees")
-    advice = f"coordinates were read as {taken}; if they are {other}, pass units='{other}'"
-    low = lowest_corner(np.vstack([building.bounds for building in buildings]), advice)
-    return City.from_buildings(
+    bounds = shapely.total_bounds([footprint.polygons for footprint in footprints])
+    system = system_for(bounds, declared_system(documents[0]), crs, path.name)
+    factor = metres_per(height_unit) if height_unit is not None else 1.0 if system is None else system.height_factor
+    note_system(notes, system, crs, declared_system(documents[0]), height_unit)
+    wording = Wording(height, base, default_height, storey_height, factor)
+    place = None if system is None else Place(*system.to_lonlat(bounds[:2]).tolist())
+    bodies = bodies_of(footprints, placed(footprints, system, place, bounds[:2]), wording, notes)
+    bodies = with_heights(bodies, wording, notes, path)
+    bodies = overridden_by_parts(bodies, notes)
+    lowest_corner(np.array([[*body.plan.bounds[a : a + 2], 0.0] for body in bodies for a in (0, 2)]), advice_on(system))
+    above_sea = heights_above == "sea" or (heights_above == "auto" and mostly_raised(bodies, notes))
+    ground, zero = ground_below(bodies, above_sea, terrain, place, notes)
+    buildings = [
+        building_of(body, *extent)
+        for body, extent in zip(progress(bodies, "buildings"), extents_of(bodies, above_sea, ground), strict=True)
+    ]
+    source = notes.source(path.name, "GeoJSON")
+    city = City.from_buildings(
         buildings,
         cell=cell,
-        origin=(low[0] - margin, low[1] - margin, 0.0),
         margin=margin,
         name=path.name.split(".")[0],
-        reference=Place(float(corner[0]), float(corner[1])) if degrees else None,
+        reference=None if place is None else place._replace(height=zero),
+        source=source,
+        terrain=ground,
+        voxels=voxels,
+        no_fly=no_fly,
     )
+    source.warn()
+    return city
 
 
-class Footprint(NamedTuple):
-    """A feature, with its polygons in the coordinates of the file; points and lines have none."""
+class Wording(NamedTuple):
+    """Where heights stand, and in what units."""
 
-    label: str
-    name: str
-    polygons: list[shapely.Polygon]
-    properties: Mapping[str, Any]
+    height: str | float
+    base: str | float
+    default_height: float | None
+    storey_height: float
+    unit: float
 
 
-def features_of(document: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]:
-    """The features of a GeoJSON document; a bare geometry is a feature without properties."""
-    features = [document] if document.get("type") == "Feature" else document.get("features")
-    if "coordinates" in document or "geometries" in document:
-        features = [{"geometry": document}]
-    if not isinstance(features, list) or not all(isinstance(feature, dict) for feature in features):
+class Body(NamedTuple):
+    """A footprint on the map with its heights."""
+
+    footprint: Footprint
+    kind: str
+    plan: shapely.MultiPolygon
+    """[m]"""
+    base: float
+    """[m]; NaN where it isn't known."""
+    top: float
+
+
+def kind_of_geometry(feature: Mapping[str, Any]) -> Any:
+    geometry = feature.get("geometry")
+    return geometry.get("type") if isinstance(geometry, dict) else geometry
+
+
+def declared_system(document: Mapping[str, Any]) -> Any:
+    """What a "crs" member names; None where there is none."""
+    crs = document.get("crs")
+    if isinstance(crs, dict) and isinstance(crs.get("properties"), dict):
+        return crs["properties"].get("name") or crs["properties"].get("code")
+    return crs if isinstance(crs, str | int) else None
+
+
+def note_system(notes: Notes, system: System | None, given: Any, declared: Any, height_unit: str | None) -> None:
+    """Say in which system coordinates and heights are."""
+    if system is None:
+        kind = "derived" if given is not None else "assumed"
+        notes.add(kind, "coordinates in metres, of an unknown place (crs='EPSG:...' names their system)", count=0)
+    else:
+        named = " (no crs: longitude and latitude, as in RFC 7946)" if given is None and declared is None else ""
+        notes.add("derived", f"place: {system.accuracy}{named}", count=0)
+    unit = height_unit or ("metre" if system is None else system.height_unit)
+    if unit not in ("metre", "m"):
+        notes.add("derived", f"heights without a unit are in {unit}", count=0)
+
+
+def advice_on(system: System | None) -> str:
+    if system is not None and system.degrees:
+        return "coordinates were read as degrees; if they are metres, pass crs='local'"
+    return "if the coordinates are in another system, pass its code, as in crs='EPSG:4326'"
+
+
+def placed(
+    footprints: Sequence[Footprint], system: System | None, place: Place | None, corner: np.ndarray
+) -> list[shapely.MultiPolygon]:
+    """The polygons in metres east and north of the place, all at once."""
+    polygons = np.array([footprint.polygons for footprint in footprints], dtype=object)
+    points = shapely.get_coordinates(polygons)
+    local = points - corner if system is None or place is None else place.east_north(system.to_lonlat(points))
+    return list(shapely.set_coordinates(polygons, local))
+
+
+def bodies_of(
+    footprints: Sequence[Footprint], plans: Sequence[shapely.MultiPolygon], wording: Wording, notes: Notes
+) -> list[Body]:
+    """Buildings and their parts, with the heights that are known."""
+    heights = [heights_of(footprint, wording, notes) for footprint in footprints]
+    kinds = kinds_of(footprints, [not np.isnan(top) for _, top in heights])
+    others = kinds.count(OTHER)
+    if others:
+        notes.add("derived", f"{OTHER}: polygons that are no building and have no height", count=others)
+    return [
+        Body(footprint, kind, plan, base, top)
+        for footprint, kind, plan, (base, top) in zip(footprints, kinds, plans, heights, strict=True)
+        if kind != OTHER
+    ]
+
+
+def heights_of(footprint: Footprint, wording: Wording, notes: Notes) -> tuple[float, float]:
+    """Base and top of a footprint [m]; the top NaN where the file doesn't say."""
+    properties, unit, storey = footprint.properties, wording.unit, wording.storey_height
+    base = stated(wording.base, properties, wording)
+    if np.isnan(base):
+        storeys = first_of(properties, ("building:min_level", "min_floor"))
+        base = 0.0 if np.isnan(storeys) else storeys * storey
+    top = stated(wording.height, properties, wording)
+    if np.isnan(top):
+        if isinstance(wording.height, str) and properties.get(wording.height) not in (None, ""):
+            notes.add("derived", f"a {wording.height} that can't be understood counts as unknown", footprint.label)
+        storeys = first_of(properties, ("building:levels", "num_floors"))
+        if storeys > 0:
+            roof = length_in_metres(properties.get("roof:height"), unit)
+            roof = roof if roof >= 0 else max(0.0, np.nan_to_num(first_of(properties, ("roof:levels",)))) * storey
+            top = storeys * storey + roof
+            notes.add("derived", f"height from storeys of {storey:g} m", footprint.label)
+    if top <= 0:
+        notes.add("derived", "a height of 0 counts as unknown", footprint.label)
+        top = np.nan
+    if top <= base:
+        notes.add("mended", "underside not below the roof: taken from the ground", footprint.label)
+        base = 0.0
+    return base, top
+
+
+def stated(what: str | float, properties: Mapping[str, Any], wording: Wording) -> float:
+    """A height [m] given for all, or by a property; NaN where that says nothing that can be understood."""
+    if not isinstance(what, str):
+        return float(what)
+    if what.endswith("levels"):
+        return length_in_metres(properties.get(what)) * wording.storey_height
+    return length_in_metres(properties.get(what), wording.unit)
+
+
+def first_of(properties: Mapping[str, Any], names: Sequence[str]) -> float:
+    """The first of several numbers that is there; else NaN."""
+    for name in names:
+        number = length_in_metres(properties.get(name))
+        if not np.isnan(number):
+            return number
+    return np.nan
+
+
+def with_heights(bodies: Sequence[Body], wording: Wording, notes: Notes, path: Path) -> list[Body]:
+    """All bodies with a height; parts without one wait for their outline. `ValueError` where none is known."""
+    unknown = [body for body in bodies if np.isnan(body.top) and body.kind == BUILDING]
+    if unknown and wording.default_height is None:
+        known = sorted({key for body in bodies for key in body.footprint.properties})
         raise ValueError(
-            f"{path.name} is not GeoJSON: expected a FeatureCollection with a list of features, "
-            f"got type {document.get('type')!r} (CityJSON is read by read_cityjson)"
+            f"{len(unknown)} of {len(bodies)} buildings in {path.name} have no height that can be understood, with "
+            f"height={wording.height!r}, nor storeys; the first is {unknown[0].footprint.label!r} with "
+            f"{unknown[0].footprint.properties.get(str(wording.height))!r}. Properties in the file: "
+            f"{', '.join(known) or 'none'}. Pass default_height=10.0, or height='one of them', or a number for all"
         )
-    return features
+    for body in unknown:
+        notes.add("assumed", f"height of {wording.default_height:g} m (default_height)", body.footprint.label)
+    return [
+        body._replace(top=max(float(wording.default_height), body.base + 1.0))
+        if np.isnan(body.top) and body.kind == BUILDING and wording.default_height is not None
+        else body
+        for body in bodies
+    ]
 
 
-def footprint_of(feature: Mapping[str, Any], index: int) -> Footprint:
-    """The polygons of a feature, checked where messages can still name the file's own coordinates."""
-    properties = feature.get("properties") or {}
-    identifier = feature.get("id", properties.get("id", f"{index} (counted from 0)"))
-    label = f"feature {identifier}"
-    try:
-        outlines = outlines_of(feature.get("geometry"))
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"geometry of {label!r} is malformed: {error!r}") from None
-    polygons = [footprint_polygon(outline, holes, label) for outline, *holes in outlines]
-    return Footprint(label, str(properties.get("name") or label), polygons, properties)
+def overridden_by_parts(bodies: Sequence[Body], notes: Notes) -> list[Body]:
+    """Bodies without the outlines that are described by their parts; what no part covers stays as high as it was."""
+    parts = [body for body in bodies if body.kind == PART]
+    outlines = [body for body in bodies if body.kind != PART]
+    if not parts:
+        notes.add("taken", BUILDING, count=len(bodies))
+        return list(bodies)
+    kept: list[Body] = []
+    heirs: dict[int, float] = {}
+    for body, members in zip(outlines, without_parts([b.plan for b in outlines], [p.plan for p in parts]), strict=True):
+        heirs |= {number: max(heirs.get(number, 0.0), body.top) for number in members}
+        if not members:
+            kept.append(body)
+            continue
+        notes.add("derived", "outline overridden by its parts", body.footprint.label)
+        rest = rest_of(body.plan, [parts[number].plan for number in members])
+        if not rest.is_empty:
+            notes.add("derived", "what no part covers, as high as its outline", body.footprint.label)
+            kept.append(body._replace(plan=rest))
+    for number, part in enumerate(parts):
+        if np.isnan(part.top):
+            if number not in heirs:
+                notes.add("left out", "part without height and outline", part.footprint.label)
+                continue
+            notes.add("derived", "part as high as its outline", part.footprint.label)
+            part = part._replace(top=max(heirs[number], part.base + 1.0))
+        kept.append(part)
+    notes.add("taken", BUILDING, count=sum(body.kind != PART for body in kept))
+    notes.add("taken", PART, count=sum(body.kind == PART for body in kept))
+    return kept
 
 
-def outlines_of(geometry: Mapping[str, Any] | None) -> list[list[np.ndarray]]:
-    """The rings (M, 2) of each polygon in a geometry, the outline first."""
-    if geometry is None:
-        return []
-    if geometry["type"] == "GeometryCollection":
-        return [outline for part in geometry["geometries"] for outline in outlines_of(part)]
-    if geometry["type"] not in ("Polygon", "MultiPolygon"):
-        return []
-    polygons = geometry["coordinates"] if geometry["type"] == "MultiPolygon" else [geometry["coordinates"]]
-    return [[np.array([(x, y) for x, y, *_ in ring], float) for ring in polygon] for polygon in polygons if polygon]
+def mostly_raised(bodies: Sequence[Body], notes: Notes) -> bool:
+    """Whether bases are heights above the sea, as most of them are not at 0; says so."""
+    if 2 * sum(body.base >= 1.0 for body in bodies) <= len(bodies):
+        return False
+    notes.add("assumed", "heights above the sea, as most bases are above 1 m (heights_above='ground' if not)", count=0)
+    return True
 
 
-def heights_above_base(
-    footprints: Sequence[Footprint], height: str | float, base: str | float
-) -> list[tuple[float, float]]:
-    """Underside and roof of each footprint [m]; `ValueError` counts those that have none and says what to do."""
-    heights, unusable = [], []
-    for footprint in footprints:
-        top = footprint.properties.get(height) if isinstance(height, str) else height
-        bottom = footprint.properties.get(base) if isinstance(base, str) else base
-        heights.append((0.0 if bottom is None else metres(bottom), metres(top)))
-        if not heights[-1][1] > heights[-1][0] >= 0:
-            unusable.append(f"{footprint.label!r} with height {top!r} and base {bottom!r}")
-    if unusable:
-        known = sorted({key for footprint in footprints for key in footprint.properties})
-        raise ValueError(
-            f"{len(unusable)} of {len(footprints)} features with polygons have no usable height, in metres and above "
-            f"a base of at least 0, with height={height!r} and base={base!r}; the first is {unusable[0]}. "
-            f"Properties in the file: {', '.join(known) or 'none'}. Pass height='one of them' or a number for all"
-        )
-    return heights
+def ground_below(
+    bodies: Sequence[Body], above_sea: bool, terrain: Any, place: Place | None, notes: Notes
+) -> tuple[Terrain | float, float]:
+    """The ground on the map, and how high its zero is in the file's vertical system [m]."""
+    if terrain is None and not above_sea:
+        notes.add("derived", "level ground at z = 0", count=0)
+        return 0.0, 0.0
+    if isinstance(terrain, int | float):
+        checks.finite("terrain", terrain)
+        return 0.0, float(terrain)
+    if terrain is None:
+        feet = [
+            np.column_stack([c, np.full(len(c), b.base)]) for b in bodies for c in [shapely.get_coordinates(b.plan)]
+        ]
+        surface = Terrain.from_points(np.concatenate(feet))
+        notes.add("derived", "ground through the feet of the buildings, linear in between", count=0)
+    else:
+        surface = read_terrain(terrain) if isinstance(terrain, str | Path) else terrain
+        checks.instance("terrain", surface, Terrain)
+        surface = surface.placed(None if place is None else place._replace(height=0.0))
+        notes.add("derived", "ground from the terrain given", count=0)
+    zero = float(min(low for low, _ in ranges_under(bodies, surface)))
+    return shifted(surface, zero), zero
 
 
-def metres(value: Any) -> float:
-    """A length [m] given as a number, as "12.5" or as "12.5 m"; NaN if it is none of these."""
-    try:
-        number = float(str(value).strip().removesuffix("m"))
-    except ValueError:
-        return np.nan
-    return number if np.isfinite(number) else np.nan
+def shifted(surface: Terrain, zero: float) -> Terrain:
+    return Terrain(surface.points - [0.0, 0.0, zero], surface.triangles, beyond=surface.beyond)
 
 
-def in_degrees(bounds: np.ndarray, crs: Any, units: str) -> bool:
-    """Whether coordinates within bounds (west, south, east, north) are degrees, see `read_geojson`."""
-    within = bool((np.abs(bounds) <= [180, 90, 180, 90]).all())
-    codes = [int(digits) for digits in re.findall(r"\d{4,6}", json.dumps(crs))]
-    if units == "degrees" and not within:
-        raise ValueError(
-            "units='degrees' takes longitudes within ±180 and latitudes within ±90, but the coordinates reach from "
-            f"({bounds[0]:g}, {bounds[1]:g}) to ({bounds[2]:g}, {bounds[3]:g}): pass units='metres'"
-        )
-    if units == "auto" and not within and WEB_MERCATOR.intersection(codes):
-        raise ValueError(
-            "coordinates are in Web Mercator (EPSG:3857), whose metres are too long by 1/cos(latitude): "
-            "convert the file to longitude and latitude (EPSG:4326)"
-        )
-    geographic = all(4000 <= code < 5000 for code in codes[-1:])  # where EPSG keeps longitude and latitude
-    return units == "degrees" or (units == "auto" and within and geographic)
+def ranges_under(bodies: Sequence[Body], surface: Terrain) -> list[tuple[float, float]]:
+    """Lowest and highest ground under each footprint, looked for at its corners and every few metres inside [m]."""
+    places = [places_in(body.plan) for body in bodies]
+    heights = surface.heights_at(np.concatenate(places))
+    ends = np.cumsum([len(some) for some in places])
+    ranges = []
+    for body, under in zip(bodies, np.split(heights, ends[:-1]), strict=True):
+        if np.isnan(under).any():
+            raise ValueError(
+                f"terrain says nothing about the ground under {body.footprint.label!r}: give a larger one, or "
+                "terrain.filled(), which goes on beyond its edges and through holes"
+            )
+        ranges.append((float(under.min()), float(under.max())))
+    return ranges
 
 
-def east_north(lonlat: npt.ArrayLike, reference: npt.ArrayLike) -> np.ndarray:
-    """East and north (..., 2) [m] of points (..., 2) [degrees], in the plane that touches WGS84 at the reference.
-
-    Exact: geodetic → earth-centred → east-north-up, with up left out. A distance of 10 km from the reference is
-    4 mm shorter in the plane than on the ellipsoid.
-    """
-    lon, lat = np.radians(np.asarray(reference, dtype=float))
-    east = [-np.sin(lon), np.cos(lon), 0.0]
-    north = [-np.sin(lat) * np.cos(lon), -np.sin(lat) * np.sin(lon), np.cos(lat)]
-    return (earth_centred(lonlat) - earth_centred(reference)) @ np.transpose([east, north])
+def places_in(plan: shapely.MultiPolygon) -> np.ndarray:
+    west, south, east, north = plan.bounds
+    x, y = np.meshgrid(np.arange(west, east, SAMPLES), np.arange(south, north, SAMPLES))
+    inside = shapely.contains_xy(plan, x, y)
+    return np.concatenate([shapely.get_coordinates(plan), np.column_stack([x[inside], y[inside]])])
 
 
-def longitude_latitude(points: npt.ArrayLike, reference: npt.ArrayLike) -> np.ndarray:
-    """Longitude and latitude (..., 2) [degrees] of points (..., 2) [m] east and north of a reference.
-
-    The inverse of `east_north`, exact: the line through the point, upright on the plane, meets the ellipsoid
-    (x² + y²)/a² + z²/b² = 1 where a quadratic equation says, the nearer of its two roots. Longitudes go on past ±180
-    instead of jumping.
-    """
-    east, north = np.moveaxis(np.asarray(points, dtype=float), -1, 0)
-    longitude, latitude = np.asarray(reference, dtype=float)
-    up_x, up_z = np.cos(np.radians(latitude)), np.sin(np.radians(latitude))  # with x towards the reference's meridian
-    start_x, _, start_z = earth_centred((0.0, latitude))
-    x, z = start_x - up_z * north, start_z + up_x * north
-    squeezed = (1 - FLATTENING) ** 2  # (b/a)²
-    half = up_x * x + up_z * z / squeezed
-    beyond = x**2 + east**2 + z**2 / squeezed - EQUATORIAL_RADIUS**2
-    up = -beyond / (half + np.sqrt(half**2 - (up_x**2 + up_z**2 / squeezed) * beyond))
-    x, z = x + up * up_x, z + up * up_z
-    turned = np.degrees(np.arctan2(east, x))
-    return np.stack([longitude + turned, np.degrees(np.arctan2(z, squeezed * np.hypot(x, east)))], axis=-1)
+def extents_of(bodies: Sequence[Body], above_sea: bool, ground: Terrain | float) -> list[tuple[float, float]]:
+    """Underside and roof of each body on the map [m]."""
+    if not isinstance(ground, Terrain):
+        return [(body.base, body.top) for body in bodies]
+    if above_sea:
+        zero = min(body.base for body in bodies)
+        return [(body.base - zero, body.top - zero) for body in bodies]
+    ranges = ranges_under(bodies, ground)
+    return [(low + body.base, high + body.top) for body, (low, high) in zip(bodies, ranges, strict=True)]
 
 
-def earth_centred(lonlat: npt.ArrayLike) -> np.ndarray:
-    """Cartesian coordinates (..., 3) [m] of points (..., 2) [degrees] on the ellipsoid WGS84."""
-    lon, lat = np.moveaxis(np.radians(np.asarray(lonlat, dtype=float)), -1, 0)
-    eccentricity_squared = FLATTENING * (2 - FLATTENING)
-    normal = EQUATORIAL_RADIUS / np.sqrt(1 - eccentricity_squared * np.sin(lat) ** 2)
-    x, y = normal * np.cos(lat) * np.cos(lon), normal * np.cos(lat) * np.sin(lon)
-    return np.stack([x, y, normal * (1 - eccentricity_squared) * np.sin(lat)], axis=-1)
+def building_of(body: Body, bottom: float, top: float) -> Building:
+    """A prism over each polygon."""
+    parts = [part for polygon in body.plan.geoms for part in convex_parts(polygon)]
+    return Building(tuple(extrude(part, bottom, top) for part in parts), body.footprint.name)

@@ -18,14 +18,13 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.city.model import check_heights, locked
+from uavlab.city.model import check_heights
 from uavlab.compiled import compiled
 from uavlab.planners.astar import ROUNDING, TIE_BREAK
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around_node, steps_of
 from uavlab.planners.heap import open_list, pop, push, room
 from uavlab.planners.question import Airspace, Ends, endpoints
 from uavlab.risk import RiskMap
-from uavlab.risk.model import high_enough
 from uavlab.route import Route
 
 MAX_TURN = MAX_PITCH = np.pi / 3
@@ -238,14 +237,13 @@ def query_of(risk_map: RiskMap, price: np.ndarray, source: int, target: int, lim
     apart = np.abs(MOVE_HEADING - np.arange(STATES)[:, None]) * np.pi / 4
     turn = np.minimum(apart, 2 * np.pi - apart) <= limits.max_turn + 1e-9
     turn[NO_HEADING] = turn[:, MOVE_HEADING == NO_HEADING] = True
-    blocked = locked(airspace_of(risk_map, limits).blocked)
+    blocked = airspace_of(risk_map, limits).blocked
     return Query(blocked, price, limits.max_pitch + 1e-9 >= MOVE_PITCH, turn, source, target)
 
 
 def airspace_of(risk_map: RiskMap, limits: Limits) -> Airspace:
     """Where the limits allow to be."""
-    flyable = high_enough(risk_map.city, limits.safe_height)
-    return Airspace(risk_map.city, limits.min_clearance, limits.min_height, limits.max_height, flyable)
+    return Airspace(risk_map.city, limits.min_clearance, limits.min_height, limits.max_height, limits.safe_height)
 
 
 def city_lengths(query: Query) -> Query:

@@ -13,6 +13,8 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.model import locked
+from uavlab.risk.model import high_enough
 from uavlab.route import Route
 
 
@@ -23,15 +25,15 @@ class Airspace(NamedTuple):
     min_clearance: float = 0.0
     min_height: float = 0.0
     max_height: float = np.inf
-    flyable: np.ndarray | None = None
-    """Of a risk map: the voxels that are high enough above roofs."""
+    safe_height: float = 0.0
+    """Least height above what lies below [m], of a risk map."""
 
     @property
     def blocked(self) -> np.ndarray:
         """Where it may not be, (nx, ny, nz) bool."""
-        city, clearance, low, high, flyable = self
+        city, clearance, low, high, above = self
         blocked = city.blocked(clearance, min_height=low, max_height=high)
-        return blocked if flyable is None else blocked | ~flyable
+        return locked(blocked | ~high_enough(city, above)) if above > 0 else blocked
 
 
 class Ends(NamedTuple):
@@ -129,7 +131,8 @@ def what_blocks(airspace: Airspace, blocked: np.ndarray, position: np.ndarray) -
     clearance = city.clearance[index]
     if clearance < airspace.min_clearance:
         return f"is {clearance:.2f} m from the nearest obstacle, min_clearance asks for {airspace.min_clearance:g} m"
-    return f"is only {city.height_above_surface[index]:.1f} m above what lies below, safe_height asks for more"
+    above = city.height_above_surface[index]
+    return f"is {above:.1f} m above what lies below, safe_height asks for {airspace.safe_height:g} m"
 
 
 def checked_position(city: City, point: npt.ArrayLike, argument: str) -> np.ndarray:

@@ -12,7 +12,6 @@ import shapely
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.city.geojson import east_north, longitude_latitude
 from uavlab.risk.rates import CARS_PER_KM, LANE_WIDTH, SHELTER, vehicle_share
 
 HIGH_BUILDING = 10.0
@@ -68,7 +67,7 @@ def raster_layer(
     points = column_centers(city)
     if geographic:
         check_degrees("bounds", edges.reshape(2, 2))
-        points = longitude_latitude(points, checked_reference(city))
+        points = city.checked_reference().longitude_latitude(points)
     west, south, east, north = edges
     column = np.floor((points[..., 0] - west) / (east - west) * raster.shape[1]).astype(int)
     row = np.floor((north - points[..., 1]) / (north - south) * raster.shape[0]).astype(int)
@@ -144,7 +143,7 @@ def road_layer(
             raise ValueError(f"lines[{number}] must be at least two finite points (M, 2), got shape {line.shape}")
         if geographic:
             check_degrees(f"lines[{number}]", line)
-            line = east_north(line, checked_reference(city))
+            line = city.checked_reference().east_north(line)
         elif np.ptp(line, axis=0).max() < SHORTEST_ROAD:
             raise ValueError(f"lines[{number}] lies within {SHORTEST_ROAD:g} m; in degrees it needs geographic=True")
         roadway = shapely.LineString(line).buffer(widths[number] / 2, cap_style="flat", join_style="mitre")
@@ -204,15 +203,6 @@ def check_degrees(name: str, points: np.ndarray) -> None:
     """Refuse what can't be longitudes and latitudes (..., 2)."""
     for axis, kind, most in ((0, "longitudes", 180.0), (1, "latitudes", 90.0)):
         checks.within(f"{name}: {kind}", points[..., axis], -most, most, "degrees (metres? leave geographic out)")
-
-
-def checked_reference(city: City) -> tuple[float, float]:
-    if city.reference is None:
-        raise ValueError(
-            f"geographic=True needs a projection, but {city.name!r} doesn't know where on Earth it lies: read it from "
-            "a file in degrees, set City.reference to the (longitude, latitude) of x = y = 0, or give metres"
-        )
-    return city.reference[:2]
 
 
 def per_line(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:
