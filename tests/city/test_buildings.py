@@ -4,9 +4,11 @@ from collections import Counter
 
 import numpy as np
 import pytest
+import shapely
 from scipy.spatial import ConvexHull
 
 from uavlab.city import Building, City, table1_buildings
+from uavlab.city.buildings import convex_parts
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
 ELL = [(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)]
@@ -181,3 +183,12 @@ BOW_TIE = [(0, 0), (2, 2), (2, 0), (0, 2)]
 def test_bad_buildings_are_refused_with_the_reason(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+
+
+def test_slender_parts_are_kept():
+    notched = shapely.Polygon([(0, 0), (100, 0), (100, 100), (0, 100), (0, 50.01), (99.9, 50), (0, 49.99)])
+    needle = shapely.Polygon([(0, 0), (1000, 0), (1000, 1000), (999.999, 1000), (999.999, 0.001), (0, 0.001)])
+    for polygon in (notched, needle):
+        parts = convex_parts(polygon)
+        assert sum(shapely.Polygon(part).area for part in parts) == pytest.approx(polygon.area, rel=1e-9)
+    assert len(convex_parts(shapely.Polygon([(0, 0), (1, 0), (0, 1)]))) == 1

@@ -1,170 +1,320 @@
-"""City models with roofs from CityJSON.
+"""City models from CityJSON: every solid that may be an obstacle, and the ground below.
 
-Every surface that is not a wall is extruded down to the ground, which turns a model of surfaces into solids of convex
-pieces. What lies beneath a roof is filled, which is the safe side.
+Buildings are filled from their roofs down to their own lowest point, which closes passages: the safe side. Everything
+else that has a height (masts, bridges, trees) keeps its lower surface. The ground comes from a relief in the file, else
+from the feet of the buildings. What was left out, and why, stands in `City.source`.
 """
 
-import warnings
-from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import shapely
 
-from uavlab.city.buildings import Building, convex_parts, extrude
-from uavlab.city.documents import count, lowest_corner, read_json
+from uavlab import checks
+from uavlab.city.buildings import Building
+from uavlab.city.cityobjects import HOUSES, RELIEF, Thing, things_in, with_all_keys
+from uavlab.city.documents import progress, read_json
 from uavlab.city.model import City
+from uavlab.city.place import FARTHEST_LOCAL, Place, System, metres_per, system_for
+from uavlab.city.rasters import read_terrain
+from uavlab.city.relief import feet_of, ground_below
+from uavlab.city.solids import THINNEST, Body, Surface, enclosed, filled, has_walls
+from uavlab.city.source import Notes
+from uavlab.city.terrain import Terrain
+from uavlab.city.zones import NoFlyZone
 
-THINNEST = 1e-3
-"""What is thinner or lower [m] is nothing, or a wall seen from above; files of city models keep three decimals."""
+COVER = {"GenericCityObject", "PlantCover"}
+"""Types that, like those of extensions, may lie flat on the ground, as grass does."""
 
-NESTING = {"MultiSurface": 0, "CompositeSurface": 0, "Solid": 1, "MultiSolid": 2, "CompositeSolid": 2}
-"""Geometries of CityJSON that have surfaces, and how many levels of lists stand around them."""
+FLAT = 1.0
+"""A cover of the ground without a volume that is lower than this [m] is none that one could hit."""
+
+LEAST, MOST = 0.1, 100e3
+"""Extents of a city [m]."""
 
 
-def read_cityjson(path: str | Path, *, cell: float = 1.0, margin: float = 20.0) -> City:
-    """Read buildings from a CityJSON file (1.0 to 2.0), or a sequence of features, with the shapes of their roofs.
+def read_cityjson(
+    path: str | Path,
+    *,
+    cell: float = 1.0,
+    margin: float = 20.0,
+    crs: str | int | None = None,
+    height_unit: str | None = None,
+    terrain: Terrain | str | Path | float | None = None,
+    voxels: str = "touched",
+    no_fly: Sequence[NoFlyZone] = (),
+) -> City:
+    """Read a city model from a CityJSON file (1.0 to 2.0), or a sequence of features.
 
-    Every surface that is not a wall is extruded down to z = 0, the lowest point of all buildings. So passages
-    under buildings and the space below a house on a hill are filled, which is the safe side. A building and its parts
-    are one `Building`; each takes its highest level of detail. x = y = 0 is the lower corner of the
-    buildings' bounding box; `City.reference` is None.
+    A building with its parts is one `Building`, filled from each surface that is not a wall down to its own lowest
+    point: passages below it are closed. Every other object with a solid or surfaces (installations on roofs, bridges,
+    furniture, trees, …) is one of its own, "BuildingInstallation mast-1", and keeps its lower surface; a surface that
+    encloses nothing becomes a slab of 0.1 m. Each takes its highest level of detail above 0.
+
+    x points east, y to true north; x = y = 0 is the south-west corner of the bounding box of all these objects, z = 0
+    the lowest foot of a building. `City.reference` is where that is on Earth, its height as in the file [m].
 
     Parameters
     ----------
     path : str or Path
-        UTF-8 text with metric coordinates.
+        UTF-8 text.
     cell : float
         Edge of a voxel [m], typically 0.5 to 5.
     margin : float
         Free space around and above the buildings [m].
+    crs : str or int, optional
+        Reference system of the coordinates, such as "EPSG:7415"; by default the file's own. "local" for metres east
+        and north of an unknown place, which small coordinates of a file without a system are taken for.
+    height_unit : str, optional
+        Of heights in the file, such as "ft"; by default that of the reference system.
+    terrain : Terrain, path of a raster, or float, optional
+        The ground; a number is level ground at this height [m] of the file. By default the `TINRelief` of the file,
+        else a surface through the feet of the buildings.
+    voxels, no_fly
+        As for `City.from_buildings`.
 
     Raises
     ------
     ValueError
-        If the file is broken, has no building with a height, is not in metres, or the map would have over
-        500 million voxels.
+        If the file is broken, has nothing that could be an obstacle, its reference system is unknown or wrong, the
+        terrain doesn't cover the map, or this would have over 500 million voxels.
 
     Warns
     -----
     UserWarning
-        If some buildings have no surface above the ground in a level of detail above 0 (a footprint).
+        If something was assumed or left out; `City.source` tells the rest.
     """
     path = Path(path)
-    documents = read_json(path)
+    notes = Notes()
+    documents = read_json(path, objects=with_all_keys)
     if documents[0].get("type") != "CityJSON":
         raise ValueError(f"{path.name} is not CityJSON: type must be 'CityJSON', got {documents[0].get('type')!r}")
-    surfaces: dict[str, list[list[np.ndarray]]] = defaultdict(list)
-    for document in documents:
-        for key, found in building_surfaces(document, documents[0].get("transform"), path):
-            surfaces[key] += found
-    if not surfaces:
-        kinds = count(item.get("type") for document in documents for item in document.get("CityObjects", {}).values())
-        raise ValueError(f"{path.name} has no Building or BuildingPart; its objects are {kinds}")
-    rings = [ring for found in surfaces.values() for rings in found for ring in rings]
-    low = lowest_corner(np.vstack(rings), "convert the file to a reference system in metres") if rings else np.zeros(3)
-    pieces = {key: pieces_below([[ring - low for ring in rings] for rings in found]) for key, found in surfaces.items()}
-    buildings = [Building(tuple(found), key) for key, found in pieces.items() if found]
-    if len(buildings) < len(pieces):
-        without = [key for key, found in pieces.items() if not found]
-        message = (
-            f"{len(without)} of {len(pieces)} buildings in {path.name} have no surface above the ground "
-            f"in a level of detail above 0, the first is {without[0]!r}"
-        )
-        if not buildings:
-            raise ValueError(message)
-        warnings.warn(f"{message}; they are left out", stacklevel=2)
-    return City.from_buildings(buildings, cell=cell, margin=margin, name=path.name.split(".")[0])
+    found = things_in(documents, path.name, notes)
+    things = [thing for thing in found if thing.kind != RELIEF]
+    if not things:
+        raise ValueError(f"{path.name} has no building, bridge or other solid: {told(notes)}")
+    system = system_of_file(documents[0], things, crs, path.name, notes)
+    factor = metres_per_height(system, height_unit, notes)
+    rough = factor * float(corners_of(things)[:, 2].min())
+    placed = placed_in(found, system, factor, rough)[1]
+    low = rough + lowest_foot(placed)
+    place, placed = placed_in(found, system, factor, low)
+    relief = [surface for thing in placed if thing.kind == RELIEF for body in thing.bodies for surface in body.surfaces]
+    buildings, feet = buildings_of([thing for thing in placed if thing.kind != RELIEF], notes)
+    if not buildings:
+        raise ValueError(f"nothing in {path.name} has a height: {told(notes)}")
+    ground = ground_of(terrain, relief, feet, place, low, notes)
+    source = notes.source(path.name, "CityJSON")
+    city = City.from_buildings(
+        buildings,
+        cell=cell,
+        margin=margin,
+        name=path.name.split(".")[0],
+        reference=place,
+        source=source,
+        terrain=ground,
+        voxels=voxels,
+        no_fly=no_fly,
+    )
+    source.warn()
+    return city
 
 
-def building_surfaces(
-    document: Mapping[str, Any], transform: Mapping[str, Any] | None, path: Path
-) -> list[tuple[str, list[list[np.ndarray]]]]:
-    """The key of each building, for a part that of its building, and its surfaces as rings (M, 3) [m]."""
-    found = []
-    key = "vertices"
-    try:
-        vertices = np.array(document.get("vertices") or [], dtype=float).reshape(-1, 3)
-        if transform is not None:
-            vertices = vertices * transform["scale"] + transform["translate"]
-        if not np.isfinite(vertices).all():
-            raise ValueError("a coordinate is NaN or infinite")
-        for key, item in document.get("CityObjects", {}).items():
-            if item["type"] == "Building":
-                found.append((key, finest_surfaces(item, vertices)))
-            elif item["type"] == "BuildingPart":
-                found.append(((item.get("parents") or [key])[0], finest_surfaces(item, vertices)))
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"{path.name}: {key!r} is malformed: {error!r}") from None
-    return found
+def told(notes: Notes) -> str:
+    """All notes in a line, for a message."""
+    return "; ".join(map(str, notes.source("", "").entries)) or "it has no objects"
 
 
-def finest_surfaces(item: Mapping[str, Any], vertices: np.ndarray) -> list[list[np.ndarray]]:
-    """Surfaces of an object in its highest level of detail; none if that is 0, a footprint."""
-    levels = defaultdict(list)
-    for geometry in item.get("geometry") or []:
-        if geometry["type"] in NESTING and float(geometry["lod"]) >= 1:
-            levels[float(geometry["lod"])].append(geometry)
-    surfaces = []
-    for geometry in levels[max(levels)] if levels else []:
-        nested = geometry["boundaries"]
-        for _ in range(NESTING[geometry["type"]]):
-            nested = [inner for outer in nested for inner in outer]
-        surfaces += [[vertices[np.array(ring, int)].reshape(len(ring), 3) for ring in rings] for rings in nested]
-    return [[ring for ring in rings if len(ring) > 2] for rings in surfaces if rings and len(rings[0]) > 2]
+def system_of_file(
+    document: Mapping[str, Any], things: Sequence[Thing], crs: str | int | None, file: str, notes: Notes
+) -> System | None:
+    """The reference system of the coordinates; None for metres of an unknown place.
 
-
-def pieces_below(surfaces: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray]:
-    """Convex pieces that fill the space between surfaces, each as rings (M, 3) [m], and the ground z = 0.
-
-    Flat surfaces of one height are joined first, so that a roof of many triangles gives few pieces; floors, which lie
-    under other surfaces, give none. Sloped surfaces are cut into triangles.
+    Models without a system are metres of a place of their own; degrees are such that all lies within a degree.
     """
-    flat, slopes, pieces = defaultdict(list), [], []
-    for rings in surfaces:
-        corners = np.vstack(rings)
-        polygon = shapely.make_valid(shapely.Polygon(rings[0][:, :2], [ring[:, :2] for ring in rings[1:]]))
-        polygon = shapely.MultiPolygon(polygons_in(polygon))
-        if not is_thick(polygon):
-            continue
-        if np.ptp(corners[:, 2]) < THINNEST:
-            flat[round(corners[:, 2].max(), 3)].append(polygon)
+    metadata = document.get("metadata") or {}
+    if not isinstance(metadata, dict):
+        raise ValueError(f"{file}: 'metadata' is malformed: it must be an object {{...}}, got {metadata!r:.60}")
+    declared = metadata.get("referenceSystem")
+    corners = corners_of(things)[:, :2]
+    bounds = (*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist())
+    nameless = crs is None and declared is None
+    if nameless and np.abs(corners).max() <= FARTHEST_LOCAL and np.ptp(corners, axis=0).max() >= 1.0:
+        system = None
+    else:
+        system = system_for(bounds, declared, crs, file)
+    if system is not None:
+        notes.add("assumed" if nameless else "derived", f"place from {system.accuracy}", count=0)
+    elif nameless:
+        notes.add("assumed", "coordinates are metres east and north of an unknown place", count=0)
+    return system
+
+
+def metres_per_height(system: System | None, height_unit: str | None, notes: Notes) -> float:
+    """Metres per unit of the heights, as the caller says or as the reference system has it."""
+    if height_unit is not None:
+        factor, unit = metres_per(height_unit), height_unit
+    elif system is not None:
+        factor, unit = system.height_factor, system.height_unit
+    else:
+        factor, unit = 1.0, "metre"
+    notes.add("derived", f"heights in {unit}", count=0)
+    return factor
+
+
+def lowest_foot(placed: Sequence[Thing]) -> float:
+    """Height [m] of the lowest building with walls; of whatever there is if there is none."""
+    solid = [thing for thing in placed if thing.kind != RELIEF]
+    houses = [thing for thing in solid if thing.kind in HOUSES and has_walls(thing.bodies)]
+    return float(corners_of(houses or solid)[:, 2].min())
+
+
+def placed_in(
+    found: Sequence[Thing], system: System | None, factor: float, low: float
+) -> tuple[Place | None, list[Thing]]:
+    """Where on Earth x = y = z = 0 is, and all that was found in metres east, north and up of there.
+
+    That is the south-west corner of the bounding box of all but the relief, and the height `low` [m].
+    """
+    corners = corners_of(found)
+    taken = np.concatenate([np.full(sum(map(len, rings_of(thing))), thing.kind != RELIEF) for thing in found])
+    place = None
+    if system is None:
+        plan = corners[:, :2] - corners[taken, :2].min(axis=0)
+    else:
+        lonlat = system.to_lonlat(corners[:, :2])
+        place = place_at(lonlat[taken.argmax()], low)
+        for _ in range(3):  # the axes turn a little when their origin moves
+            plan = place.east_north(lonlat)
+            place = place_at(place.longitude_latitude(plan[taken].min(axis=0)), low)
+        plan = place.east_north(lonlat)
+    check_extent(plan[taken])
+    local = np.column_stack([plan, factor * corners[:, 2] - low])
+    rings = iter(np.split(local, np.cumsum([len(ring) for thing in found for ring in rings_of(thing)])))
+    return place, [
+        thing._replace(
+            bodies=[Body([[next(rings) for _ in each] for each in body.surfaces], body.tight) for body in thing.bodies]
+        )
+        for thing in found
+    ]
+
+
+def place_at(lonlat: np.ndarray, height: float) -> Place:
+    longitude, latitude = lonlat.tolist()
+    return Place(longitude, latitude, height)
+
+
+def check_extent(plan: np.ndarray) -> None:
+    """Refuse what is no city, most of all degrees that were read as metres."""
+    x, y = np.ptp(plan, axis=0)
+    if not LEAST <= max(x, y) <= MOST:
+        raise ValueError(
+            f"the city covers {x:.3g} × {y:.3g} m, which is none: pass the reference system of the coordinates, "
+            "crs='EPSG:...', or crs='local' for metres"
+        )
+
+
+def rings_of(thing: Thing) -> Iterator[np.ndarray]:
+    return (ring for body in thing.bodies for surface in body.surfaces for ring in surface)
+
+
+def corners_of(things: Iterable[Thing]) -> np.ndarray:
+    """All corners of things, (N, 3)."""
+    return np.concatenate([ring for thing in things for ring in rings_of(thing)])
+
+
+def buildings_of(things: Sequence[Thing], notes: Notes) -> tuple[list[Building], np.ndarray]:
+    """Things [m] as solids, and the corners (N, 3) that buildings stand on."""
+    buildings, feet = [], [np.empty((0, 3))]
+    for thing in progress(things, "objects"):
+        pieces = house(thing, feet, notes) if thing.kind in HOUSES else obstacle(thing, notes)
+        if pieces:
+            buildings.append(solid_of(pieces, thing, notes))
+            for kind, key in thing.sources:
+                notes.add("taken", kind, key)
+    return buildings, np.concatenate(feet)
+
+
+def solid_of(pieces: Sequence[np.ndarray], thing: Thing, notes: Notes) -> Building:
+    """Pieces as one solid; what rounding left without a volume is grown to a millimetre, so that nothing is lost."""
+    try:
+        return Building(tuple(pieces), thing.name)
+    except ValueError:
+        notes.add("mended", f"{thing.kind} with a piece thinner than rounding", thing.name)
+        grown = [piece if has_volume(piece) else boxed(piece) for piece in pieces]
+        return Building(tuple(grown), thing.name)
+
+
+def has_volume(piece: np.ndarray) -> bool:
+    try:
+        Building((piece,))
+    except ValueError:
+        return False
+    return True
+
+
+def boxed(piece: np.ndarray) -> np.ndarray:
+    """The bounding box (8, 3) of corners, a millimetre larger."""
+    low, high = piece.min(axis=0) - THINNEST, piece.max(axis=0) + THINNEST
+    return np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+
+
+def house(thing: Thing, feet: list[np.ndarray], notes: Notes) -> list[np.ndarray]:
+    """Pieces of a building [m], filled to its own lowest point; the corners of its feet are added to `feet`.
+
+    Roofs alone tell nothing of a foot; they are filled down to the lowest of the others, z = 0.
+    """
+    if has_walls(thing.bodies):
+        foot = feet_of(thing.bodies)
+        bottom = float(corners_of([thing])[:, 2].min())
+    else:
+        foot, bottom = np.empty((0, 3)), 0.0
+    pieces, passage = filled(thing.bodies, bottom)
+    if not pieces:
+        notes.add("left out", "Building without a height", thing.name)
+        return []
+    if not len(foot):
+        notes.add("derived", "Building of roofs alone, filled to the lowest foot", thing.name)
+    if passage:
+        notes.add("derived", "Building filled below a passage, a step or an inner floor", thing.name)
+    feet.append(foot)
+    return pieces
+
+
+def obstacle(thing: Thing, notes: Notes) -> list[np.ndarray]:
+    """Pieces of anything else [m], which keeps its lower surface."""
+    found = [enclosed(body) for body in thing.bodies]
+    pieces = [piece for each, _ in found for piece in each]
+    cover = thing.kind in COVER or thing.kind.startswith("+")
+    if cover and not any(solid for _, solid in found) and np.ptp(corners_of([thing])[:, 2]) < FLAT:
+        notes.add("left out", f"{thing.kind}: flat", thing.sources[0][1])
+        return []
+    if not pieces:
+        notes.add("left out", f"{thing.kind}: no area", thing.sources[0][1])
+    return pieces
+
+
+def ground_of(
+    terrain: Terrain | str | Path | float | None,
+    relief: Sequence[Surface],
+    feet: np.ndarray,
+    place: Place | None,
+    low: float,
+    notes: Notes,
+) -> Terrain | float:
+    """The ground in the city's metres, from where it is known best."""
+    if terrain is None:
+        if relief:
+            notes.add("derived", f"ground from {RELIEF}, beyond it from the feet of buildings or the nearest", count=0)
+        elif len(feet):
+            notes.add("derived", "ground from the feet of the buildings", count=0)
         else:
-            slopes.append((corners[:, 2].min(), polygon))
-            pieces += pieces_below_slope(polygon, corners)
-    higher = shapely.Polygon()
-    for height in sorted((height for height in flat if height > THINNEST), reverse=True):
-        cover = shapely.union_all([higher, *(polygon for low, polygon in slopes if low >= height - THINNEST)])
-        level = shapely.union_all(flat[height])
-        for polygon in polygons_in(level):
-            if is_thick(polygon.difference(cover)):
-                pieces += [extrude(part, 0.0, height) for part in convex_parts(polygon)]
-        higher = higher.union(level)
-    return pieces
-
-
-def pieces_below_slope(polygon: shapely.MultiPolygon, corners: np.ndarray) -> list[np.ndarray]:
-    """A convex piece below each triangle of a surface, given from above and by its corners (M, 3) [m]."""
-    pieces = []
-    corners = corners[np.argsort(-corners[:, 2])]  # of two corners above each other, the higher one counts
-    for triangle in filter(is_thick, shapely.constrained_delaunay_triangles(polygon).geoms):
-        outline = shapely.get_coordinates(triangle)[:3]
-        nearest = np.linalg.norm(outline[:, None] - corners[:, :2], axis=2).argmin(axis=1)
-        piece = extrude(outline, 0.0, 0.0)
-        piece[:3, 2] = corners[nearest, 2]
-        if piece[:, 2].max() > THINNEST:
-            pieces.append(piece)
-    return pieces
-
-
-def is_thick(polygon: shapely.Geometry) -> bool:
-    """Whether a polygon is wider than about a millimetre; a wall, seen from above, is not."""
-    return 2 * polygon.area > THINNEST * polygon.length
-
-
-def polygons_in(geometry: shapely.Geometry) -> list[shapely.Polygon]:
-    """The polygons of a geometry, without the lines and points that a repair may leave."""
-    parts = shapely.get_parts(shapely.get_parts(geometry))
-    return [part for part in parts if part.geom_type == "Polygon" and not part.is_empty]
+            notes.add("assumed", "ground level at the lowest point, no building tells where it is", count=0)
+        return ground_below(relief, feet)
+    notes.add("derived", "ground from terrain=" + (f", which wins over the file's {RELIEF}" if relief else ""), count=0)
+    if isinstance(terrain, Terrain | str | Path):
+        return (terrain if isinstance(terrain, Terrain) else read_terrain(terrain)).placed(place)
+    checks.number("terrain", terrain)
+    checks.finite("terrain", terrain)
+    return float(terrain) - low
