@@ -110,6 +110,8 @@ MAKERS = {
     "Flights": "monte_carlo(route, city, uav, disturbance, rng=...) makes some",
     "City": "read_city(path) reads one, a RiskMap has one as its .city",
     "RiskMap": "RiskMap(city, population_density, shelter) makes one",
+    "Terrain": "Terrain.from_raster(heights, bounds) makes one, read_terrain(path) reads one",
+    "NoFlyZone": "NoFlyZone(outline, lower, upper) makes one",
     "Route": "planners give one, Route(points) makes one; several are given one by one, as in *routes",
     "Curve": "smooth(route, city, uav) makes one",
     "UAV": "uavlab.vehicle has some",

@@ -2,6 +2,8 @@
 
 import json
 
+import numpy as np
+
 SQUARE = [[1000, 2000], [1010, 2000], [1010, 2010], [1000, 2010], [1000, 2000]]  # 10 × 10 m
 COURTYARD = [[1003, 2003], [1007, 2003], [1007, 2007], [1003, 2007], [1003, 2003]]  # 4 × 4 m
 FAR = [[1040, 2040], [1050, 2040], [1050, 2050], [1040, 2050], [1040, 2040]]
@@ -19,7 +21,9 @@ def write(path, *documents, encoding="utf-8"):
 
 
 def volume(city):
-    return city.occupied.sum() * city.cell**3
+    """Of what is above the ground [m³]."""
+    centers = city.center_of(np.argwhere(city.occupied))
+    return np.count_nonzero(city.height_above_ground(centers) > 0) * city.cell**3
 
 
 BOX_CORNERS = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]

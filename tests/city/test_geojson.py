@@ -1,20 +1,21 @@
-"""GeoJSON with known content: volumes in closed form, projections by other formulas, every error."""
+"""GeoJSON with known content: volumes in closed form, heights as people write them, places on Earth, every error."""
+
+import warnings
 
 import numpy as np
 import pytest
 from files import COURTYARD, FAR, SQUARE, feature, volume, write
-from hypothesis import given
-from hypothesis import strategies as st
 
-from uavlab.city import Building, City, read_city, read_geojson
-from uavlab.city.geojson import east_north, longitude_latitude
+from uavlab.city import Building, City, Terrain, read_city, read_geojson
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*coordinates in metres, of an unknown place:UserWarning")
 
 
 def test_projected_metres_are_shifted_to_the_south_west_corner(geojson):
     city = read_geojson(geojson(feature(SQUARE, height=10), feature(FAR, height=20)), cell=0.5)
     assert np.allclose(city.buildings[0].bounds, [(0, 0, 0), (10, 10, 10)])
     assert np.allclose(city.buildings[1].bounds, [(40, 40, 0), (50, 50, 20)])
-    assert np.allclose(city.bounds, [(-20, -20, 0), (70, 70, 40)])
+    assert np.allclose(city.bounds, [(-20, -20, -0.5), (70, 70, 40)])
     assert volume(city) == pytest.approx(1000 + 2000)
     assert city.reference is None
     assert city.name == "town"
@@ -22,7 +23,7 @@ def test_projected_metres_are_shifted_to_the_south_west_corner(geojson):
 
 def test_margin_is_free_space_around_and_above(geojson):
     city = read_geojson(geojson(feature(SQUARE, height=10)), margin=5)
-    assert np.allclose(city.bounds, [(-5, -5, 0), (15, 15, 15)])
+    assert np.allclose(city.bounds, [(-5, -5, -1), (15, 15, 15)])
 
 
 @pytest.mark.parametrize("ring", [SQUARE, SQUARE[:-1], SQUARE[::-1], [[*point, 7.0] for point in SQUARE]])
@@ -52,7 +53,9 @@ def test_geometry_collection_gives_its_polygons(geojson):
     assert volume(city) == pytest.approx(2000)
 
 
-@pytest.mark.parametrize("height", [12, 12.0, "12", "12.0", "12 m", "12m", " 12.0 m "])
+@pytest.mark.parametrize(
+    "height", [12, 12.0, "12", "12.0", "12 m", "12m", " 12.0 m ", "12,0", "12 metres", "12+", "~12", "8;12"]
+)
 def test_height_is_a_number_or_a_text(geojson, height):
     city = read_geojson(geojson(feature(SQUARE, height=height)))
     assert city.buildings[0].bounds[1, 2] == 12
@@ -67,12 +70,12 @@ def test_height_is_another_property_or_one_for_all(geojson):
 def test_base_makes_a_building_float_above_the_ground_of_the_map(geojson):
     path = geojson(feature(SQUARE, height=10, min_height="4 m", underside=6))
     city = read_geojson(path)
-    assert city.bounds[0, 2] == 0
+    assert city.bounds[0, 2] == -1  # one layer of ground
     assert city.is_free([(5, 5, 3.5), (5, 5, 10.5)]).all()
     assert not city.is_free([(5, 5, 4.5), (5, 5, 9.5)]).any()
-    assert read_geojson(path, base="underside").buildings[0].bounds[0, 2] == 6
-    assert read_geojson(path, base=2).buildings[0].bounds[0, 2] == 2
-    assert read_geojson(path, base="absent").buildings[0].bounds[0, 2] == 0
+    assert read_geojson(path, base="underside", heights_above="ground").buildings[0].bounds[0, 2] == 6
+    assert read_geojson(path, base=2, heights_above="ground").buildings[0].bounds[0, 2] == 2
+    assert read_geojson(path, base="absent", heights_above="ground").buildings[0].bounds[0, 2] == 0
 
 
 def test_what_is_not_a_polygon_is_skipped(geojson):
@@ -115,56 +118,6 @@ def radii_of_curvature(lat):
     return a * (1 - e2) / w**1.5, a / np.sqrt(w)
 
 
-@pytest.mark.parametrize("lat", [-60.0, 0.0, 35.0, 52.0])
-def test_an_arc_second_is_as_long_as_the_radii_of_curvature_say(lat):
-    second = np.radians(1 / 3600)
-    meridian, normal = radii_of_curvature(lat + 0.5 / 3600)
-    assert np.allclose(east_north((4.0, lat + 1 / 3600), (4.0, lat)), (0, meridian * second), atol=1e-6)
-    east = east_north((4.0 + 1 / 3600, lat), (4.0, lat))
-    assert east[0] == pytest.approx(radii_of_curvature(lat)[1] * np.cos(np.radians(lat)) * second, abs=1e-6)
-    assert normal == pytest.approx(radii_of_curvature(lat)[1], rel=1e-6)
-
-
-def test_distances_agree_with_haversine():
-    rng = np.random.default_rng(3)
-    for lat in (-52.0, 35.0, 52.0):
-        points = np.array([4.36, lat]) + rng.uniform(-0.05, 0.05, (50, 2))
-        local = east_north(points, (4.36, lat))
-        lon, phi = np.radians(points).T
-        for i, j in zip(range(49), range(1, 50), strict=True):
-            h = np.sin((phi[i] - phi[j]) / 2) ** 2
-            h += np.cos(phi[i]) * np.cos(phi[j]) * np.sin((lon[i] - lon[j]) / 2) ** 2
-            assert np.linalg.norm(local[i] - local[j]) == pytest.approx(2 * 6371e3 * np.arcsin(np.sqrt(h)), rel=0.005)
-
-
-references = st.tuples(st.floats(-180, 180), st.floats(-90, 90))
-within_100_km = st.tuples(st.floats(0, 100e3), st.floats(0, 2 * np.pi)).map(
-    lambda polar: (polar[0] * np.cos(polar[1]), polar[0] * np.sin(polar[1]))
-)
-
-
-@given(st.lists(within_100_km, min_size=1, max_size=4), references)
-def test_longitude_and_latitude_are_the_inverse_of_east_and_north(points, reference):
-    lonlat = longitude_latitude(points, reference)
-    assert lonlat.shape == (len(points), 2)
-    assert (np.abs(lonlat[:, 1]) <= 90).all()
-    assert east_north(lonlat, reference) == pytest.approx(np.array(points), abs=1e-6)
-
-
-@given(st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)), st.floats(-180, 180), st.floats(-80, 80))
-def test_east_and_north_are_the_inverse_of_longitude_and_latitude(away, lon, lat):
-    lonlat = np.add((lon, lat), away)
-    assert longitude_latitude(east_north(lonlat, (lon, lat)), (lon, lat)) == pytest.approx(lonlat, abs=1e-11)
-
-
-def test_longitudes_go_on_past_the_date_line_and_grids_keep_their_shape():
-    lonlat = longitude_latitude(np.full((2, 3, 2), (5000.0, 0.0)), (179.99, -17))
-    assert lonlat.shape == (2, 3, 2)
-    assert lonlat[0, 0, 0] == pytest.approx(180.037, abs=1e-3)
-    assert longitude_latitude((-5000, 0), (-179.99, -17))[0] == pytest.approx(-180.037, abs=1e-3)
-    assert longitude_latitude((0, 0), (4.36, 52.01)) == pytest.approx((4.36, 52.01), abs=1e-12)
-
-
 def degrees(metres_ring, lon=4.36, lat=52.01):
     """A ring in metres near (1000, 2000) as longitude and latitude, by the radii of curvature."""
     meridian, normal = radii_of_curvature(lat)
@@ -175,10 +128,9 @@ def degrees(metres_ring, lon=4.36, lat=52.01):
 
 def test_degrees_become_metres_from_the_south_west_corner(geojson):
     city = read_geojson(geojson(feature(degrees(SQUARE), height=10), feature(degrees(FAR), height=20)), cell=0.5)
-    assert city.reference == (4.36, 52.01)
+    assert city.reference == pytest.approx((4.36, 52.01, 0.0))
     assert np.allclose(city.buildings[0].bounds, [(0, 0, 0), (10, 10, 10)], atol=1e-3)
     assert np.allclose(city.buildings[1].bounds, [(40, 40, 0), (50, 50, 20)], atol=2e-3)
-    assert volume(city) == pytest.approx(3000, rel=0.05)
 
 
 def test_town_on_both_sides_of_the_date_line_stays_together(geojson):
@@ -188,103 +140,295 @@ def test_town_on_both_sides_of_the_date_line_stays_together(geojson):
     assert city.bounds[1, 0] - city.bounds[0, 0] < 300
 
 
-@pytest.mark.parametrize("name", ["EPSG:28992", "urn:ogc:def:crs:EPSG::28992"])
-def test_projected_crs_says_metres_even_for_small_numbers(geojson, name):
-    crs = {"type": "name", "properties": {"name": name}}
-    city = read_geojson(geojson(feature([[5, 5], [15, 5], [15, 15], [5, 15]], height=10), crs=crs))
-    assert volume(city) == pytest.approx(1000)
-    assert city.reference is None
+@pytest.mark.parametrize(
+    ("text", "metres"), [("40 ft", 12.192), ("40'", 12.192), ("40'6\"", 12.3444), ("40 feet", 12.192)]
+)
+def test_feet_are_feet(geojson, text, metres):
+    assert read_geojson(geojson(feature(SQUARE, height=text))).buildings[0].bounds[1, 2] == pytest.approx(metres)
 
 
-@pytest.mark.parametrize("name", ["urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:4326", "urn:ogc:def:crs:EPSG::4258"])
-def test_geographic_crs_says_degrees(geojson, name):
-    crs = {"type": "name", "properties": {"name": name}}
-    assert read_geojson(geojson(feature(degrees(SQUARE), height=10), crs=crs)).reference == (4.36, 52.01)
+STOREYS = [
+    ({"building:levels": "38"}, 0, 114),
+    ({"building:levels": 3, "roof:levels": 2}, 0, 15),
+    ({"building:levels": "3", "roof:height": "4 m"}, 0, 13),
+    ({"building:levels": "4;5"}, 0, 15),
+    ({"building:levels": 9, "building:min_level": 2}, 6, 27),
+    ({"building:levels": 9, "min_height": "5 m", "building:min_level": 2}, 5, 27),
+    ({"building:levels": 2, "height": "10 m"}, 0, 10),
+    ({"building:levels": 2, "height": "unknown"}, 0, 6),
+    ({"num_floors": 4, "min_floor": 1}, 3, 12),
+]
 
 
-def test_units_can_be_given(geojson):
-    small = geojson(feature([[5, 5], [15, 5], [15, 15], [5, 15]], height=10))
-    assert volume(read_geojson(small, units="metres")) == pytest.approx(1000)
-    # EPSG:7844, GDA2020: longitude and latitude, but the code doesn't tell
-    path = geojson(feature(degrees(SQUARE), height=10), crs={"properties": {"name": "EPSG:7844"}})
-    assert read_geojson(path, units="degrees").reference == (4.36, 52.01)
-    with pytest.raises(ValueError, match=r"no city: coordinates were read as metres.*pass units='degrees'"):
-        read_geojson(path)
+@pytest.mark.parametrize(("properties", "bottom", "top"), STOREYS)
+def test_storeys_count_where_no_height_is_known(geojson, properties, bottom, top):
+    city = read_geojson(geojson(feature(SQUARE, **properties)))
+    assert city.buildings[0].bounds[:, 2].tolist() == [bottom, top]
+    if "height" not in properties or properties["height"] == "unknown":
+        assert city.source.count("derived", "height from storeys of 3 m") == 1
+    higher = read_geojson(geojson(feature(SQUARE, **properties)), storey_height=4.0)
+    assert higher.buildings[0].bounds[1, 2] >= top
 
 
-def test_metres_mistaken_for_degrees_are_noticed(geojson):
-    path = geojson(feature([[0, 0], [80, 0], [80, 60], [0, 60]], height=10))
-    with pytest.raises(ValueError, match=r"read as degrees; if they are metres, pass units='metres'"):
-        read_geojson(path)
+def test_a_property_that_counts_storeys_is_never_read_as_metres(geojson):
+    city = read_geojson(geojson(feature(SQUARE, **{"building:levels": 38})), height="building:levels")
+    assert city.buildings[0].bounds[1, 2] == 114
 
 
-def test_degrees_out_of_range_are_refused(geojson):
-    with pytest.raises(ValueError, match=r"within ±180.*reach from \(1000, 2000\) to \(1010, 2010\).*units='metres'"):
-        read_geojson(geojson(feature(SQUARE, height=10)), units="degrees")
-
-
-def test_unknown_units_are_refused(geojson):
-    with pytest.raises(ValueError, match="units must be 'auto', 'degrees' or 'metres', got 'feet'"):
-        read_geojson(geojson(feature(SQUARE, height=10)), units="feet")
-
-
-def test_web_mercator_is_refused_because_its_metres_are_too_long(geojson):
-    crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::3857"}}
-    with pytest.raises(ValueError, match=r"Web Mercator.*convert the file to longitude and latitude"):
-        read_geojson(geojson(feature(SQUARE, height=10), crs=crs))
-
-
-def test_missing_heights_are_counted_and_named(geojson):
-    features = [feature(SQUARE, height=10), feature(SQUARE, levels=2), feature(SQUARE, height="tall")]
+def test_missing_heights_are_counted_and_named_with_the_cure(geojson):
+    features = [feature(SQUARE, height=10), feature(SQUARE, stairs=2), feature(SQUARE, height="tall")]
     features[1]["id"] = "way/7"
-    with pytest.raises(ValueError, match="2 of 3 features with polygons have no usable height") as error:
-        read_geojson(geojson(*features, {"type": "Feature", "geometry": None}))
-    message = str(error.value)
-    assert "the first is 'feature way/7' with height None" in message
-    assert "Properties in the file: height, levels." in message
-    assert "Pass height='one of them' or a number for all" in message
+    path = geojson(*features, {"type": "Feature", "geometry": None})
+    with pytest.raises(ValueError, match=r"2 of 3 buildings in town\.geojson have no height that can be") as error:
+        read_geojson(path)
+    assert "the first is 'feature way/7' with None" in str(error.value)
+    assert "Properties in the file: height, stairs." in str(error.value)
+    assert "Pass default_height=10.0, or height='one of them'" in str(error.value)
+    with pytest.warns(UserWarning, match=r"assumed: 2 × height of 7 m \(default_height\) \(feature way/7, feature 2"):
+        city = read_geojson(path, default_height=7.0)
+    assert [building.bounds[1, 2] for building in city.buildings] == [10, 7, 7]
+    assert city.source.count("derived", "that can't be understood") == 1
+
+
+@pytest.mark.parametrize("height", [0, True, "nan", "inf m", -5, "-5 m", None, [3], {"m": 3}, 10**400, "1e3", ""])
+def test_what_is_no_height_counts_as_unknown(geojson, height):
+    path = geojson(feature(SQUARE, height=height))
+    with pytest.raises(ValueError, match=r"1 of 1 buildings .* have no height"):
+        read_geojson(path)
+
+
+def test_an_underside_above_the_roof_is_taken_from_the_ground(geojson):
+    city = read_geojson(geojson(feature(SQUARE, height=5, min_height=5), feature(FAR, height=5, min_height="low")))
+    assert [building.bounds[0, 2] for building in city.buildings] == [0, 0]
+    assert city.source.count("mended", "underside") == 1
+
+
+def shifted(ring, by):
+    return [[x + by[0], y + by[1]] for x, y in ring]
+
+
+def test_parts_override_the_outline_that_they_lie_in(geojson):
+    tower, podium = [[2, 2], [4, 2], [4, 4], [2, 4]], [[0, 0], [10, 0], [10, 10], [0, 10]]
+    outline = feature(podium, building="yes", height=368)
+    parts = [
+        feature(podium, height=12, **{"building:part": "yes"}),
+        feature(tower, height=368, **{"building:part": "yes"}),
+    ]
+    city = read_geojson(geojson(outline, *parts), crs="local")
+    assert volume(city) == pytest.approx(100 * 12 + 4 * (368 - 12))
+    assert city.source.count("derived", "outline overridden") == 1
+    assert city.source.count("taken", "building part") == 2
+
+
+def test_what_no_part_covers_stays_as_high_as_the_outline(geojson):
+    outline = feature([[0, 0], [10, 0], [10, 10], [0, 10]], building="yes", height=20)
+    half = feature([[0, 0], [5, 0], [5, 10], [0, 10]], **{"building:part": "yes", "building:levels": 2})
+    apart = feature([[20, 0], [25, 0], [25, 10], [20, 10]], height=9, **{"building:part": "yes"})
+    no_part = feature([[5, 0], [10, 0], [10, 10], [5, 10]], height=3, building="yes", **{"building:part": "no"})
+    city = read_geojson(geojson(outline, half, apart), crs="local")
+    assert volume(city) == pytest.approx(50 * 20 + 50 * 6 + 50 * 9)
+    assert volume(read_geojson(geojson(outline, no_part), crs="local")) == pytest.approx(100 * 20)
+    sliver = feature([[0, 0], [9.95, 0], [9.95, 10], [0, 10]], height=4, **{"building:part": "yes"})
+    assert max(b.bounds[1, 2] for b in read_geojson(geojson(outline, sliver), crs="local").buildings) == 4
+
+
+def test_a_part_without_height_is_as_high_as_its_outline_or_left_out(geojson):
+    outline = feature([[0, 0], [10, 0], [10, 10], [0, 10]], building="yes", height=20)
+    part = feature([[0, 0], [10, 0], [10, 10], [0, 10]], **{"building:part": "yes"})
+    assert volume(read_geojson(geojson(outline, part), crs="local")) == pytest.approx(2000)
+    lost = feature([[50, 0], [60, 0], [60, 10], [50, 10]], **{"building:part": "yes"})
+    with pytest.warns(UserWarning, match="left out: 1 × part without height and outline"):
+        assert volume(read_geojson(geojson(outline, lost), crs="local")) == pytest.approx(2000)
+
+
+def test_in_a_file_of_openstreetmap_land_and_water_are_no_buildings(geojson):
+    house = feature(SQUARE, building="house", height=6)
+    lake, demolished = feature(FAR, natural="water"), feature(FAR, building="no", landuse="grass")
+    chimney = feature(FAR, man_made="chimney", height="30 m")
+    city = read_geojson(geojson(house, lake, demolished))
+    assert volume(city) == pytest.approx(600)
+    assert city.source.count("derived", "no obstacle: polygons that are no building") == 2
+    assert volume(read_geojson(geojson(house, lake, chimney))) == pytest.approx(600 + 3000)
 
 
 @pytest.mark.parametrize(
-    ("properties", "told"),
+    ("rings", "area"),
     [
-        ({"height": 0}, r"with height 0 and base None"),
-        ({"height": True}, r"with height True"),
-        ({"height": "nan"}, r"with height 'nan'"),
-        ({"height": "inf m"}, r"with height 'inf m'"),
-        ({"height": 5, "min_height": 5}, r"with height 5 and base 5"),
-        ({"height": 5, "min_height": -1}, r"with height 5 and base -1"),
-        ({"height": 5, "min_height": "low"}, r"with height 5 and base 'low'"),
+        ([[[0, 0], [10, 10], [10, 0], [0, 10]]], 50),  # a bow-tie
+        ([[[0, 0], [10, 0], [10, 10], [10, 14], [10, 10], [0, 10]]], 100),  # a spike
+        ([[[0, 0], [10, 0], [10, 0], [10, 10], [0, 10], [0, 10], [0, 0]]], 100),  # corners that stand twice
+        ([[[0, 0], [10, 0], [10, 10], [0, 10]], [[3, 3], [3, 3], [4, 4], [3, 3]]], 100),  # a hole without area
+        (
+            [[[0, 0], [10, 0], [10, 10], [0, 10]], [[2, 2], [6, 2], [6, 6], [2, 6]], [[4, 4], [8, 4], [8, 8], [4, 8]]],
+            76,
+        ),
     ],
 )
-def test_height_must_be_above_the_base_and_the_base_not_below_the_ground(geojson, properties, told):
-    with pytest.raises(ValueError, match=r"1 of 1 features .* the first is 'feature 0 \(counted from 0\)' " + told):
-        read_geojson(geojson(feature(SQUARE, **properties)))
+def test_broken_rings_are_mended_with_their_area(geojson, rings, area):
+    city = read_geojson(
+        geojson(feature(SQUARE, height=10), feature(*[shifted(r, (1030, 2030)) for r in rings], height=10))
+    )
+    footprint = sum(np.ptp(piece[:, 2]) and area_of(piece) for piece in city.buildings[1].pieces)
+    assert footprint == pytest.approx(area)
 
 
-def test_height_for_all_must_be_positive(geojson):
-    with pytest.raises(ValueError, match=r"no usable height.*with height=-3"):
-        read_geojson(geojson(feature(SQUARE)), height=-3)
+def area_of(piece):
+    from scipy.spatial import ConvexHull
+
+    return ConvexHull(piece[:, :2]).volume
 
 
-def test_self_crossing_outline_is_named_with_the_place_in_the_file(geojson):
-    bow = feature([[4.0, 52.0], [4.002, 52.002], [4.002, 52.0], [4.0, 52.002]], height=5)
-    with pytest.raises(
-        ValueError, match=r"'feature 1 \(counted from 0\)' is not a simple.*Self-intersection\[4\.001 52"
-    ):
-        read_geojson(geojson(feature(degrees(SQUARE), height=5), bow))
+def test_only_what_has_no_area_is_left_out_and_named(geojson):
+    path = geojson(feature(SQUARE, height=5), feature([[0, 0], [1, 1], [0, 0]], height=5), feature([], height=5))
+    with pytest.warns(UserWarning, match=r"left out: 2 × polygon without area \(feature 1 .*, feature 2"):
+        assert len(read_geojson(path, crs="local").buildings) == 1
 
 
-def test_outline_of_two_corners_is_refused(geojson):
-    with pytest.raises(ValueError, match=r"'feature 0 .*' needs at least three different corners"):
-        read_geojson(geojson(feature([[0, 0], [1, 1], [0, 0]], height=5)))
+def test_a_porch_on_a_hall_is_not_dropped(geojson):
+    hall = [[0, 0], [1000, 0], [1000, 1000], [501.5, 1000], [501.5, 1001.2], [500, 1001.2], [500, 1000], [0, 1000]]
+    city = read_geojson(geojson(feature(hall, height=5)), crs="local", cell=1.0)
+    assert not city.is_free((500.7, 1000.9, 2.0))
 
 
-@pytest.mark.parametrize("rings", [[[[0], [1], [2]]], [[5, 6, 7]], 3, [[["a", "b"], [1, 2], [3, 4]]]])
-def test_malformed_coordinates_are_named(geojson, rings):
-    geometry = {"type": "Polygon", "coordinates": rings}
-    with pytest.raises(ValueError, match=r"geometry of 'feature 0 \(counted from 0\)' is malformed"):
+BY_CODE = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::2263"}}
+
+
+def test_feet_of_new_york_are_metres_here(geojson):
+    ring = [[981000, 195000], [981100, 195000], [981100, 195100], [981000, 195100]]
+    city = read_geojson(geojson(feature(ring, height=330), crs=BY_CODE), cell=2.0)
+    size = np.ptp(city.buildings[0].bounds, axis=0)
+    assert size == pytest.approx([30.48, 30.48, 100.584], rel=2e-4)
+    assert city.source.count("derived", "heights without a unit are in US survey foot") == 0
+    assert "heights without a unit are in US survey foot" in str(city.source)
+    in_metres = read_geojson(geojson(feature(ring, height=330), crs=BY_CODE), cell=5.0, height_unit="m")
+    assert in_metres.buildings[0].bounds[1, 2] == 330
+    said = read_geojson(geojson(feature(ring, height="100 m"), crs=BY_CODE), cell=5.0)
+    assert said.buildings[0].bounds[1, 2] == 100
+    back = city.to_geographic(city.buildings[0].bounds)
+    assert back[0, :2] == pytest.approx([-74.0117, 40.7019], abs=1e-4)
+    assert city.from_geographic(back) == pytest.approx(city.buildings[0].bounds, abs=1e-6)
+
+
+def test_web_mercator_is_brought_to_true_metres(geojson):
+    ring = [[-8238000, 4970000], [-8237900, 4970000], [-8237900, 4970100], [-8238000, 4970100]]
+    crs = {"type": "name", "properties": {"name": "EPSG:3857"}}
+    city = read_geojson(geojson(feature(ring, height=10), crs=crs))
+    assert np.ptp(city.buildings[0].bounds, axis=0)[:2] == pytest.approx([75.7, 75.5], rel=5e-3)
+    assert read_geojson(geojson(feature(ring, height=10)), crs=3857).buildings[0].bounds == pytest.approx(
+        city.buildings[0].bounds
+    )
+
+
+@pytest.mark.parametrize(
+    "name", ["urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:4326", "urn:ogc:def:crs:EPSG::4258", "EPSG:7844"]
+)
+def test_geographic_systems_have_degrees(geojson, name):
+    crs = {"type": "name", "properties": {"name": name}}
+    city = read_geojson(geojson(feature(degrees(SQUARE), height=10), crs=crs))
+    assert city.reference == pytest.approx((4.36, 52.01, 0.0), abs=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("ring", "options", "message"),
+    [
+        (
+            [[0, 0], [80, 0], [80, 60], [0, 60]],
+            {},
+            r"no city: .* if they are metres, pass crs='local'",
+        ),
+        (
+            shifted(SQUARE, (84_000, 447_000)),
+            {},
+            r"names no reference system, .* crs='local'",
+        ),
+        (SQUARE, {"crs": "EPSG:4326"}, "coordinates .* are no degrees, but EPSG:4326"),
+        (SQUARE, {"crs": "EPSG:0"}, "crs='EPSG:0' is no reference system that pyproj knows"),
+        (
+            degrees(SQUARE) if False else [[9.5, 48.7], [9.6, 48.7], [9.6, 48.8]],
+            {"crs": 25832},
+            "they look like degrees",
+        ),
+        (SQUARE, {"height_unit": "yard"}, "height_unit must be one of 'm'"),
+        (SQUARE, {"storey_height": 0}, "storey_height must be finite and above 0"),
+        (SQUARE, {"default_height": -1}, "default_height must be finite and above 0"),
+        (SQUARE, {"heights_above": "roof"}, "heights_above must be one of 'auto', 'ground', 'sea'"),
+        (SQUARE, {"height": -3}, "have no height that can be understood, with height=-3"),
+        (SQUARE, {"voxels": "corners"}, "voxels must be one of 'touched', 'centres', got 'corners'"),
+        (SQUARE, {"terrain": np.nan}, "terrain must be finite"),
+        (SQUARE, {"terrain": [1, 2]}, "terrain must be a Terrain"),
+        (SQUARE, {"cell": 0.01}, r"cell=0\.01 m gives .* use a cell of at least"),
+        (SQUARE, {"margin": -5}, "margin must be finite and at least 0"),
+    ],
+)
+def test_what_cant_be_known_is_asked_for(geojson, ring, options, message):
+    with pytest.raises(ValueError, match=message):
+        read_geojson(geojson(feature(ring, height=10)), **options)
+
+
+def bases(low=5.0, hill=120.0):
+    return [
+        feature(shifted(SQUARE, (x - 1000, -2000)), BaseHeight=base, TopHeight=base + 20)
+        for x, base in ((0, low), (100, hill), (200, low))
+    ]
+
+
+def test_heights_above_the_sea_stand_on_the_ground(geojson):
+    options = {"height": "TopHeight", "base": "BaseHeight", "crs": "local"}
+    with pytest.warns(UserWarning, match="assumed: heights above the sea, as most bases are above 1 m"):
+        city = read_geojson(geojson(*bases()), **options)
+    assert [b.bounds[:, 2].tolist() for b in city.buildings] == [[0, 20], [115, 135], [0, 20]]
+    assert city.height_above_ground([(5, 5, 3), (105, 5, 118), (55, 5, 60)]) == pytest.approx(
+        [3, 3, 60 - 57.5], abs=0.7
+    )
+    assert not city.is_free((55, 5, 50))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_geojson(geojson(*bases()), heights_above="sea", **options)
+        floating = read_geojson(geojson(*bases()), heights_above="ground", **options)
+    assert floating.buildings[1].bounds[:, 2].tolist() == [120, 140]
+    assert floating.is_free((105, 5, 50))
+
+
+def test_buildings_stand_on_a_terrain_that_is_given(geojson):
+    slope = Terrain.from_raster(40 + 0.5 * np.tile(np.arange(-40, 80.0), (120, 1)), (-40, -40, 80, 80), crs=None)
+    city = read_geojson(geojson(feature(SQUARE, height=10), feature(FAR, height=10)), terrain=slope, crs="local")
+    first, second = (building.bounds[:, 2] for building in city.buildings)
+    assert first == pytest.approx([0.0, 5.0 + 10], abs=0.3)  # from the lowest ground below to above the highest
+    assert second == pytest.approx([20.0, 25.0 + 10], abs=0.3)
+    assert city.height_above_ground((25.0, 5.0, 30.0)) == pytest.approx(30 - 12.5, abs=0.3)
+    level = read_geojson(geojson(feature(degrees(SQUARE), height=10)), terrain=12.0)
+    assert level.reference.height == 12.0
+    assert level.to_geographic((0, 0, 5))[2] == 17.0
+    small = Terrain.from_raster(np.zeros((30, 30)), (-20, -20, 10, 10))
+    path = geojson(feature(SQUARE, height=10), feature(FAR, height=10))
+    with pytest.raises(ValueError, match="terrain says nothing about the ground under 'feature 1"):
+        read_geojson(path, terrain=small, crs="local")
+
+
+@pytest.mark.parametrize(
+    "geometry",
+    [
+        {"type": "Polygon", "coordinates": [[[0], [1], [2]]]},
+        {"type": "Polygon", "coordinates": [[5, 6, 7]]},
+        {"type": "Polygon", "coordinates": 3},
+        {"type": "Polygon", "coordinates": [[["a", "b"], [1, 2], [3, 4]]]},
+        {"type": "Polygon", "coordinates": [[[10**400, 1], [1, 2], [3, 4]]]},
+        "abc",
+        ["Polygon"],
+        {"coordinates": []},
+        {"type": "GeometryCollection", "geometries": 5},
+    ],
+)
+def test_malformed_geometry_is_named(geojson, geometry):
+    with pytest.raises(ValueError, match=r"'feature 0 \(counted from 0\)' is malformed"):
         read_geojson(geojson({"type": "Feature", "properties": {"height": 5}, "geometry": geometry}))
+
+
+def test_properties_that_are_no_object_are_named(geojson):
+    broken = feature(SQUARE)
+    broken["properties"] = [1]
+    with pytest.raises(ValueError, match=r"'feature 0 .*' is malformed"):
+        read_geojson(geojson(broken))
 
 
 def test_file_without_polygons_says_what_it_has(geojson):
@@ -301,15 +445,39 @@ def test_other_json_is_not_geojson(tmp_path, document):
         read_geojson(write(tmp_path / "other.json", document))
 
 
-def test_too_many_voxels_name_the_cell(geojson):
-    with pytest.raises(ValueError, match=r"cell=0\.01 m gives .* use a cell of at least"):
-        read_geojson(geojson(feature(SQUARE, height=10)), cell=0.01)
+@pytest.mark.parametrize("separator", ["\n", "\n\n", "\x1e", "\n\x1e", " "])
+def test_features_may_be_separated_by_anything(tmp_path, separator):
+    import json
+
+    path = tmp_path / "town.geojsons"
+    lines = [json.dumps(feature(ring, height=10)) for ring in (SQUARE, FAR)]
+    path.write_text("\x1e" * (separator == "\n\x1e") + separator.join(lines))
+    assert len(read_city(path).buildings) == 2
 
 
 def test_city_that_was_written_by_hand_is_read_back(geojson):
     """Buildings → GeoJSON in metres → the same voxels."""
     ell = [(0, 0), (30, 0), (30, 10), (10, 10), (10, 30), (0, 30)]
     tower = [(20, 20), (28, 20), (28, 28), (20, 28)]
-    known = City.from_buildings([Building.prism(ell, 12), Building.prism(tower, 30, bottom=8)], cell=0.5)
+    known = City.from_buildings([Building.prism(ell, 12), Building.prism(tower, 30, bottom=8)], cell=0.5, terrain=0.0)
     path = geojson(feature(ell, height=12), feature(tower, height=30, min_height=8))
-    assert np.array_equal(read_geojson(path, cell=0.5, units="metres").occupied, known.occupied)
+    assert np.array_equal(read_geojson(path, cell=0.5, crs="local").occupied, known.occupied)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_whatever_is_changed_in_a_file_only_a_value_error_comes_out(tmp_path, seed):
+    import json
+
+    rng = np.random.default_rng(seed)
+    text = json.dumps({"type": "FeatureCollection", "features": [feature(SQUARE, COURTYARD, height=9), *bases()]})
+    for _ in range(20):
+        at = int(rng.integers(len(text)))
+        junk = rng.choice(["", "0", "-", "]", "[", "{", "}", '"', "null", "1e999", "NaN", ",", "true", "\x1e", "é"])
+        path = tmp_path / "town.geojson"
+        path.write_text(text[:at] + junk + text[at + int(rng.integers(4)) :], encoding="utf-8")
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                read_geojson(path, cell=10.0, default_height=5.0)
+        except ValueError:
+            pass

@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from uavlab.city import Building, City
-
+from uavlab.city.place import Place
 from uavlab.risk import POPULATION_DENSITY, RiskMap, raster_layer, road_layer, shelter_layer, vehicle_share
 from uavlab.risk.layers import column_centers
 
@@ -58,7 +58,7 @@ def test_first_row_of_a_raster_lies_in_the_north_and_the_first_column_in_the_wes
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_each_column_reads_the_pixel_in_which_its_centre_lies(seed):
+def test_each_column_has_the_mean_of_the_pixels_on_it(seed):
     rng = np.random.default_rng(seed)
     raster = rng.random(rng.integers(1, 12, 2))
     west, north = 100 - rng.uniform(0, 30), 10 + rng.uniform(0, 30)
@@ -66,33 +66,83 @@ def test_each_column_reads_the_pixel_in_which_its_centre_lies(seed):
     layer = raster_layer(CITY, raster, (west, south, east, north))
     wide, tall = (east - west) / raster.shape[1], (north - south) / raster.shape[0]
     for i, j in np.ndindex(4, 3):
-        x, y = CITY.center_of((i, j, 0))[:2]
-        (found,) = [
-            raster[row, column]
-            for row, column in np.ndindex(raster.shape)
-            if west + column * wide <= x < west + (column + 1) * wide
-            and north - (row + 1) * tall < y <= north - row * tall
-        ]
-        assert layer[i, j] == found
+        column = shapely.box(100 + 10 * i, -20 + 10 * j, 110 + 10 * i, -10 + 10 * j)
+        mean = 0.0
+        for r, c in np.ndindex(raster.shape):
+            pixel = shapely.box(west + c * wide, north - (r + 1) * tall, west + (c + 1) * wide, north - r * tall)
+            mean += raster[r, c] * column.intersection(pixel).area / 100
+        assert layer[i, j] == pytest.approx(mean, rel=1e-9)
+
+
+@pytest.mark.parametrize("per", ["pixel", "km²", "m²"])
+@pytest.mark.parametrize("pixel", [1.7, 7.0, 60.0])
+def test_people_of_a_raster_are_all_on_the_map_and_none_twice(per, pixel):
+    rng = np.random.default_rng(2)
+    counts = rng.integers(0, 50, (int(120 / pixel) + 1, int(150 / pixel) + 1))
+    bounds = (-10.0, -5.0, -10 + pixel * counts.shape[1], -5 + pixel * counts.shape[0])
+    areas = {"pixel": 1.0, "km²": pixel**2 / 1e6, "m²": pixel**2}[per]
+    layer = raster_layer(FIELD, counts, bounds, per=per)
+    expected = 0.0
+    for r, c in np.ndindex(counts.shape):
+        box = shapely.box(
+            bounds[0] + c * pixel, bounds[3] - (r + 1) * pixel, bounds[0] + (c + 1) * pixel, bounds[3] - r * pixel
+        )
+        expected += counts[r, c] * areas * box.intersection(shapely.box(0, 0, 100, 75)).area / pixel**2
+    assert layer.sum() * FIELD.cell**2 == pytest.approx(expected, rel=1e-9)
+
+
+def test_people_of_a_raster_in_degrees_and_in_feet_are_all_on_the_map():
+    (west, south), (east, north) = degrees([(-20, -20), (120, 95)])
+    counts = np.random.default_rng(0).integers(0, 9, (23, 31))
+    whole = City(np.zeros((90, 80, 1), bool), cell=2.5, origin=(-60, -60, 0), reference=DELFT)
+    layer = raster_layer(whole, counts, (west, south, east, north), crs="EPSG:4326", per="pixel", fill=0.0)
+    assert area_of_people(whole, layer) == pytest.approx(counts.sum(), rel=1e-6)
+    corner = np.array([981_000.0, 195_000.0])
+    york = City(np.zeros((60, 60, 1), bool), cell=5.0, origin=(-60, -60, 0), reference=(-74.01172, 40.70191))
+    bounds = [*corner, *(corner + np.array([310.0, 230.0]))]
+    layer = raster_layer(york, counts, bounds, crs="EPSG:2263", per="pixel", fill=0.0)
+    assert area_of_people(york, layer) == pytest.approx(counts.sum(), rel=1e-6)
+
+
+def area_of_people(city, layer):
+    return layer.sum() * city.cell**2
+
+
+def test_what_is_masked_is_no_data_whatever_stands_below_the_mask():
+    city = City(np.zeros((4, 4, 8), bool), cell=50.0)
+    per_km2 = np.ma.masked_equal(np.array([[65535, 5000], [65535, 3000]], np.uint16), 65535)
+    layer = raster_layer(city, per_km2, (0, 0, 200, 200), per="km²", fill=0.0)
+    assert layer[:2].tolist() == [[0.0] * 4] * 2
+    assert layer[2:].max() == pytest.approx(5000e-6)
+    with pytest.raises(ValueError, match="values say nothing about 8 of the city's 16 columns"):
+        raster_layer(city, per_km2, (0, 0, 200, 200))
+    assert raster_layer(city, per_km2, (0, 0, 200, 200), fill=7.0)[0, 0] == 7.0
+
+
+def test_a_large_raster_is_read_where_the_city_is():
+    far = City(np.zeros((4, 4, 1), bool), cell=10.0, origin=(50_000, 50_000, 0))
+    values = np.add.outer(np.arange(1000.0)[::-1], np.zeros(1000))
+    layer = raster_layer(far, values, (0, 0, 100_000, 100_000))
+    assert layer == pytest.approx(500.0)
 
 
 def test_geographic_raster_is_split_where_the_degrees_say():
     (lon, _), (_, lat) = degrees([(50, 0), (0, 30)])
     (west, south), (east, north) = degrees([(-20, -20), (120, 95)])
     in_halves = [2 * lon - east, south, east, north]  # two pixels that meet 50 m east of the reference
-    layer = raster_layer(FIELD, [[1.0, 2.0]], in_halves, geographic=True)
-    assert (layer[:20] == 1).all()
-    assert (layer[20:] == 2).all()
+    layer = raster_layer(FIELD, [[1.0, 2.0]], in_halves, crs="EPSG:4326")
+    assert layer[:20] == pytest.approx(1, abs=1e-3)
+    assert layer[20:] == pytest.approx(2, abs=1e-3)
     upright = [west, 2 * lat - north, east, north]
-    layer = raster_layer(FIELD, [[1.0], [2.0]], upright, geographic=True)
-    assert (layer[:, :12] == 2).all()  # the second row lies in the south
-    assert (layer[:, 12:] == 1).all()
+    layer = raster_layer(FIELD, [[1.0], [2.0]], upright, crs="EPSG:4326")
+    assert layer[:, :12] == pytest.approx(2, abs=1e-4)  # the second row lies in the south
+    assert layer[:, 12:] == pytest.approx(1, abs=1e-4)
 
 
 def test_raster_that_doesnt_cover_the_city_is_refused_unless_there_is_a_fill():
     raster = np.full((2, 2), 0.03)
     small = (100, -20, 120, 10)
-    with pytest.raises(ValueError, match=r"nothing about 6 of the city's 12 columns .* larger raster, or .* fill"):
+    with pytest.raises(ValueError, match=r"nothing about 6 of the city's 12 columns, .* larger raster, or .* fill"):
         raster_layer(CITY, raster, small)
     layer = raster_layer(CITY, raster, small, fill=0.001)
     assert layer[:2] == pytest.approx(0.03)
@@ -104,18 +154,18 @@ def test_degrees_taken_for_metres_are_refused_and_metres_for_degrees():
     raster, road = np.full((2, 2), 0.03), [(108.9, 34.2), (108.91, 34.21)]
     for fill in (None, 0.0):
         with pytest.raises(
-            ValueError, match=r"bounds must lie around the city, .* m \(in degrees\? say geographic=True"
+            ValueError, match=r"bounds must lie around the city, .* m \(in degrees\? say crs='EPSG:4326'"
         ):
             raster_layer(CITY, raster, (-179, -80, -178, -79), fill=fill)
-    with pytest.raises(ValueError, match=r"lines\[0\] lies within 0.1 m; in degrees it needs geographic=True"):
+    with pytest.raises(ValueError, match=r"lines\[0\] lies within 0.1 m; in degrees it needs crs='EPSG:4326'"):
         road_layer(CITY, [road], 6.0)
     on_earth = replace(CITY, reference=(108.9, 34.2))
-    with pytest.raises(ValueError, match=r"bounds: latitudes must be from -90 to 90 degrees .* got 150"):
-        raster_layer(on_earth, raster, (0, 0, 150, 150), geographic=True)
+    with pytest.raises(ValueError, match=r"latitudes must be from -90 to 90 degrees .* got 150"):
+        raster_layer(on_earth, raster, (0, 0, 150, 150), crs="EPSG:4326")
     with pytest.raises(ValueError, match=r"latitudes must be from -90 to 90 degrees .* got 108.9"):
-        road_layer(on_earth, [np.fliplr(road)], 6.0, geographic=True)
-    with pytest.raises(ValueError, match=r"bounds must lie around the city, .* degrees, got"):
-        raster_layer(on_earth, raster, (8, 50, 9, 51), geographic=True)
+        road_layer(on_earth, [np.fliplr(road)], 6.0, crs="EPSG:4326")
+    with pytest.raises(ValueError, match=r"bounds must lie around the city, .* in EPSG:4326 .*, got"):
+        raster_layer(on_earth, raster, (8, 50, 9, 51), crs="EPSG:4326")
 
 
 def test_names_of_shelter_may_come_as_objects():
@@ -199,10 +249,19 @@ def test_roads_cover_what_their_union_covers(seed):
     lines = rng.uniform((0, 0), (100, 75), (6, 2, 2))
     widths = rng.uniform(2, 12, 6)
     union = shapely.union_all(
-        [shapely.LineString(li).buffer(w / 2, cap_style="flat") for li, w in zip(lines, widths, strict=True)]
+        [
+            shapely.LineString(li).buffer(w / 2, cap_style="flat", join_style="round")
+            for li, w in zip(lines, widths, strict=True)
+        ]
     )
     expected = SHARE * shapely.area(shapely.intersection(union, shapely.box(0, 0, 100, 75)))
     assert area_of_cars(FIELD, road_layer(FIELD, lines, widths)) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_road_ends_where_its_line_ends_though_it_turns_back():
+    hairpin = [(20, 30), (60, 30), (20, 31)]
+    layer = road_layer(FIELD, [hairpin], 6.0)
+    assert (layer[26:] == 0).all()  # beyond x = 65
 
 
 def test_cars_and_lanes_set_the_share():
@@ -213,9 +272,9 @@ def test_cars_and_lanes_set_the_share():
 
 def test_geographic_roads_are_the_same_roads():
     line = np.array([(10, 12), (70, 60), (90, 20)])
-    layer = road_layer(FIELD, [degrees(line)], 6.0, geographic=True)
+    layer = road_layer(FIELD, [degrees(line)], 6.0, crs="EPSG:4326")
     assert layer == pytest.approx(road_layer(FIELD, [line], 6.0), abs=SHARE * 1e-3)
-    exact = road_layer(FIELD, [Place(*DELFT).longitude_latitude(line)], 6.0, geographic=True)
+    exact = road_layer(FIELD, [Place(*DELFT).longitude_latitude(line)], 6.0, crs="EPSG:4326")
     assert exact == pytest.approx(road_layer(FIELD, [line], 6.0), abs=SHARE * 1e-9)
 
 
@@ -306,14 +365,16 @@ LINE = [(0, 0), (10, 10)]
         (lambda: raster_layer(CITY, [[1]], (100, 10, 140, -20)), "bounds must be .* increasing order"),
         (lambda: raster_layer(CITY, [[1]], (100, 10, np.nan, 20)), "bounds must be .* increasing order"),
         (lambda: raster_layer(CITY, [[1]], "abcd"), "bounds must be a number or an array of numbers: got text"),
+        (lambda: raster_layer(CITY, [[1]], BOUNDS, per="mile"), "per must be one of 'm²', 'km²', 'pixel', got 'mile'"),
+        (lambda: raster_layer(CITY, [[1]], BOUNDS, crs="EPSG:0"), "crs='EPSG:0' is no reference system"),
         (lambda: raster_layer(CITY, [[1]], BOUNDS, fill=np.nan), "fill must be finite, got nan"),
         (lambda: raster_layer(CITY, [[1]], BOUNDS, fill="0"), "fill must be a number .* got text, '0'"),
         (lambda: raster_layer(CITY, [[1]], BOUNDS, fill=[0, 1]), "fill must be one number, got an array"),
         (
-            lambda: raster_layer(CITY, [[1]], BOUNDS, geographic=True),
-            r"geographic=True needs a projection, but 'city' doesn't know .* set City.reference .* or give metres",
+            lambda: raster_layer(CITY, [[1]], BOUNDS, crs="EPSG:4326"),
+            r"'city' doesn't know where on Earth it lies: read it with crs=\.\.\., or give City its reference",
         ),
-        (lambda: road_layer(CITY, [LINE], 5, geographic=True), "geographic=True needs a projection"),
+        (lambda: road_layer(CITY, [LINE], 5, crs="EPSG:4326"), "doesn't know where on Earth it lies"),
         (lambda: road_layer(CITY, LINE, 5), r"lines\[0\] must be at least two finite points .* got shape \(2,\)"),
         (lambda: road_layer(CITY, [LINE, [(0, 0)]], 5), r"lines\[1\] must be .* got shape \(1, 2\)"),
         (lambda: road_layer(CITY, [[(0, 0, 0), (1, 1, 1)]], 5), r"lines\[0\] must be .* got shape \(2, 3\)"),

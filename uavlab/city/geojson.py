@@ -38,6 +38,9 @@ STOREY_HEIGHT = 3.0
 
 ABOVE = ("auto", "ground", "sea")
 
+OSM_BASE = "min_height"
+"""OpenStreetMap's key of an underside, which is always above ground."""
+
 SAMPLES = 2.0
 """Between the places at which the ground under a footprint is looked at [m]."""
 
@@ -46,7 +49,7 @@ def read_geojson(
     path: str | Path,
     *,
     height: str | float = "height",
-    base: str | float = "min_height",
+    base: str | float = OSM_BASE,
     default_height: float | None = None,
     storey_height: float = STOREY_HEIGHT,
     heights_above: str = "auto",
@@ -81,7 +84,8 @@ def read_geojson(
         [m], above 0.
     heights_above : {"auto", "ground", "sea"}
         What heights and bases are measured from. "sea": bases are the heights of the ground above the sea, and the
-        ground goes through them. "auto" takes that where most bases are 1 m and more.
+        ground goes through them. "auto" takes that where `base` is not OpenStreetMap's `min_height` and most bases are
+        1 m and more.
     height_unit : {"m", "ft", "us-ft"}, optional
         Of heights without a unit; by default that of the reference system.
     crs : anything that pyproj takes, or "local", optional
@@ -130,7 +134,9 @@ def read_geojson(
     bodies = with_heights(bodies, wording, notes, path)
     bodies = overridden_by_parts(bodies, notes)
     lowest_corner(np.array([[*body.plan.bounds[a : a + 2], 0.0] for body in bodies for a in (0, 2)]), advice_on(system))
-    above_sea = heights_above == "sea" or (heights_above == "auto" and mostly_raised(bodies, notes))
+    above_sea = heights_above == "sea" or (
+        heights_above == "auto" and base != OSM_BASE and mostly_raised(bodies, notes)
+    )
     ground, zero = ground_below(bodies, above_sea, terrain, place, notes)
     buildings = [
         building_of(body, *extent)

@@ -113,6 +113,8 @@ class System:
             If a coordinate has no place on Earth in this system.
         """
         xy = np.asarray(xy, dtype=float)
+        if self.degrees:
+            checks.within("latitudes", xy[..., 1], -90.0, 90.0, "degrees (the order is longitude, latitude)")
         lonlat = np.stack(self.transformer.transform(xy[..., 0], xy[..., 1]), axis=-1)
         if not np.isfinite(lonlat).all():
             wrong = xy[~np.isfinite(lonlat).all(axis=-1)].reshape(-1, 2)[0]

@@ -1,7 +1,7 @@
 """Reading a city from a file: the format is found by looking, voxel maps are read here.
 
-Real coordinates are degrees, or metres counted from far away. In a city that was read x points east, y north, x = y = 0
-is the south-west corner of the buildings' bounding box and z = 0 the ground; the map begins `margin` metres before it.
+In a city that was read x points to true east, y to true north, both in metres; x = y = 0 is near the south-west corner
+of the buildings and z = 0 the lowest ground at one. The map begins `margin` metres before them, a layer lower.
 """
 
 import re
@@ -15,6 +15,10 @@ from uavlab.city.cityjson import read_cityjson
 from uavlab.city.documents import read_json
 from uavlab.city.geojson import read_geojson
 from uavlab.city.model import MOST_VOXELS, City
+
+FIRST_BYTES = 65_536
+GEOJSON = ("FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon")
+KIND = re.compile(rb'"type"\s*:\s*"(CityJSON|FeatureCollection)"')
 
 
 def read_city(path: str | Path, **options: Any) -> City:
@@ -36,14 +40,15 @@ def read_city(path: str | Path, **options: Any) -> City:
     """
     path = Path(path)
     with path.open("rb") as file:
-        start = file.read(64).removeprefix(b"\xef\xbb\xbf").lstrip()
+        start = file.read(FIRST_BYTES).removeprefix(b"\xef\xbb\xbf").lstrip(b" \t\r\n\x1e")
     if path.suffix.lower() == ".3dmap" or start.startswith(b"voxel"):
         return read_voxels(path, **options)
     if start.startswith(b"{") or path.suffix.lower() in {".json", ".jsonl", ".geojson"}:
-        kind = read_json(path)[0].get("type")
-        if kind == "CityJSON":
+        kind = KIND.search(start)  # not by parsing, which takes long for a large file
+        found = kind[1].decode() if kind else read_json(path)[0].get("type")
+        if found == "CityJSON":
             return read_cityjson(path, **options)
-        if kind in {"FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon"}:
+        if found in GEOJSON:
             return read_geojson(path, **options)
     raise ValueError(
         f"{path.name} is not a city that can be read. Known are GeoJSON (.geojson, .json: footprints with heights), "

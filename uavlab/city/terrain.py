@@ -7,14 +7,12 @@ as far as is known (linear in gaps, nearest beyond), or the map is refused there
 
 import math
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
-from scipy.spatial import Delaunay, QhullError
+from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from uavlab import checks
 from uavlab.city.place import LOCAL, Place, System, system_of
@@ -164,26 +162,14 @@ class Terrain:
         plan = checks.numbers("places", places)
         if plan.ndim != 2 or plan.shape[1] != 2 or not np.isfinite(plan).all():
             raise ValueError(f"places must be finite and have shape (N, 2), got {plan.shape}")
-        corners = self.points[self.triangles]
-        heights = np.full(len(plan), np.nan)
-        if len(corners):
-            low = np.minimum(corners[..., :2].min(axis=(0, 1)), plan.min(axis=0)) if len(plan) else np.zeros(2)
-            extent = float(np.ptp(np.concatenate([corners[..., :2].reshape(-1, 2), plan]), axis=0).max())
-            bins = max(min(int(math.sqrt(len(corners))), 1000), 1)
-            heights_in_bins(corners - [*low, 0.0], plan - low, max(extent, 1e-9) * (1 + 1e-9) / bins, bins, heights)
-        return self.beyond_filled(plan, heights)
-
-    def beyond_filled(self, plan: np.ndarray, heights: np.ndarray) -> np.ndarray:
-        """Heights (N,) at places (N, 2); where they are NaN filled in, if the ground goes on there."""
+        heights = heights_of(self.points[self.triangles], plan)
         missing = np.isnan(heights)
-        if self.beyond == "refuse" or not missing.any():
-            return heights
-        heights = heights.copy()
-        with suppress(QhullError, ValueError):  # fewer than three points, or all on a line
-            heights[missing] = LinearNDInterpolator(self.points[:, :2], self.points[:, 2])(plan[missing])
-        missing = np.isnan(heights)
-        if missing.any():
-            heights[missing] = NearestNDInterpolator(self.points[:, :2], self.points[:, 2])(plan[missing])
+        if self.beyond == "nearest" and missing.any():
+            heights[missing] = heights_of(self.points[triangulated(self.points)], plan[missing])
+            missing = np.isnan(heights)
+            if missing.any():
+                nearest = cKDTree(self.points[:, :2]).query(plan[missing])[1]
+                heights[missing] = self.points[nearest, 2]
         return heights
 
 
@@ -239,6 +225,17 @@ def triangulated(points: np.ndarray) -> np.ndarray:
         return Delaunay(points[:, :2] - points[:, :2].mean(axis=0)).simplices
     except (QhullError, ValueError):
         return np.empty((0, 3), int)
+
+
+def heights_of(corners: np.ndarray, plan: np.ndarray) -> np.ndarray:
+    """Heights (N,) of triangles (T, 3, 3) at places (N, 2); NaN where there is none."""
+    heights = np.full(len(plan), np.nan)
+    if len(corners) and len(plan):
+        everything = np.concatenate([corners[..., :2].reshape(-1, 2), plan])
+        low, extent = everything.min(axis=0), float(np.ptp(everything, axis=0).max())
+        bins = max(min(int(math.sqrt(len(corners))), 1000), 1)
+        heights_in_bins(corners - [*low, 0.0], plan - low, max(extent, 1e-9) * (1 + 1e-9) / bins, bins, heights)
+    return heights
 
 
 @compiled

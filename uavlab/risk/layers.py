@@ -1,10 +1,11 @@
 """Layers of the ground for any city: population from a raster, cars from road lines, shelter from what stands there.
 
-Each gives one number per column of voxels, (nx, ny), for `RiskMap`. A raster is read at the columns' centres; roads
-count by the share of a column that they cover, so that narrow roads on coarse maps keep their cars.
+Each gives one number per column of voxels, (nx, ny), for `RiskMap`. Rasters and roads count by the share of a column
+that they cover, so that nobody is lost or counted twice, and narrow roads on coarse maps keep their cars.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,13 +13,26 @@ import shapely
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.columns import share_out
+from uavlab.city.place import System, system_of
+from uavlab.city.terrain import filled_masks
 from uavlab.risk.rates import CARS_PER_KM, LANE_WIDTH, SHELTER, vehicle_share
 
 HIGH_BUILDING = 10.0
 """From this height on [m] a building counts as high; the papers draw no line."""
 
+LONGEST_MITRE = 1.5
+"""Of half the width: beyond it the outside of a bend is cut off, or a hairpin would reach far beyond the road."""
+
 SHORTEST_ROAD = 0.1
 """A road that is shorter [m] is one in degrees: 0.1° are 10 km."""
+
+
+PER = {None: 1.0, "m²": 1.0, "km²": 1e-6, "pixel": 1.0}
+"""What values of a raster are per; a layer of people is per m²."""
+
+COVERED = 1 - 1e-6
+"""Share of a column from which on it counts as covered: the rest is rounding of coordinates."""
 
 
 def raster_layer(
@@ -26,23 +40,26 @@ def raster_layer(
     values: npt.ArrayLike,
     bounds: Sequence[float],
     *,
-    geographic: bool = False,
+    crs: Any = None,
+    per: str | None = None,
     fill: float | None = None,
 ) -> np.ndarray:
-    """Values of a raster at the columns of a city.
+    """A raster on the columns of a city, shared out by area: its sum over the map stays what it was.
 
     Parameters
     ----------
     city : City
     values : (rows, columns) array
-        As in a picture: the first row lies in the north, the first column in the west. NaN is "no data". For
-        `RiskMap(population_density=...)` in people per m²: divide counts by the area of a pixel.
+        As in a picture: the first row lies in the north, the first column in the west. NaN, or masked: no data.
     bounds : (west, south, east, north)
-        Of the whole raster: in metres of the city, or in degrees.
-    geographic : bool
-        Bounds are longitudes and latitudes on WGS84; the city must know its `reference`.
+        Of the whole raster: in metres of the city, or in the coordinates of `crs`.
+    crs : anything that pyproj takes, optional
+        The reference system of the bounds, such as "EPSG:4326" for degrees; the city must know its `reference`.
+    per : {None, "m²", "km²", "pixel"}
+        None, "m²": values are taken as they are, as a mean over the area of a column. "km²": and divided by a million.
+        "pixel": counts of each pixel, divided by its area. With the last three `RiskMap` takes it as a density.
     fill : float, optional
-        What to take where the raster says nothing, finite; without it that is an error.
+        What to take where the raster says nothing, in the unit of the values; without it that is an error.
 
     Returns
     -------
@@ -52,10 +69,11 @@ def raster_layer(
     ------
     ValueError
         If `values` isn't two-dimensional, bounds are not in order or lie elsewhere, the city has no reference for
-        degrees, or the raster doesn't cover the city and there is no `fill`.
+        `crs`, or the raster doesn't cover the city and there is no `fill`.
     """
     checks.instance("city", city, City)
-    raster = checks.numbers("values", values)
+    factor = PER[per] if per is None else PER[checks.one_of("per", per, [name for name in PER if name])]
+    raster = filled_masks("values", values)
     if raster.ndim != 2 or raster.size == 0:
         raise ValueError(f"values must have shape (rows, columns), got {raster.shape}")
     edges = checks.numbers("bounds", bounds)
@@ -64,30 +82,68 @@ def raster_layer(
     if fill is not None:
         checks.number("fill", fill)
         checks.finite("fill", fill)
-    points = column_centers(city)
-    if geographic:
-        check_degrees("bounds", edges.reshape(2, 2))
-        points = city.checked_reference().longitude_latitude(points)
-    west, south, east, north = edges
-    column = np.floor((points[..., 0] - west) / (east - west) * raster.shape[1]).astype(int)
-    row = np.floor((north - points[..., 1]) / (north - south) * raster.shape[0]).astype(int)
-    inside = (column >= 0) & (column < raster.shape[1]) & (row >= 0) & (row < raster.shape[0])
-    if not inside.any():
-        ranges = ", ".join(f"{points[..., a].min():g} to {points[..., a].max():g}" for a in range(2))
-        unit = "degrees" if geographic else "m (in degrees? say geographic=True)"
-        raise ValueError(f"bounds must lie around the city, whose columns are at {ranges} {unit}, got {bounds!r}")
-    layer = np.full(city.shape[:2], np.nan)
-    layer[inside] = raster[row[inside], column[inside]]
-    missing = np.isnan(layer)
+    system = None if crs is None else system_of(crs)
+    raster, edges = part_around(city, raster, edges, system)
+    quads = pixels_of(city, raster.shape, edges, system)
+    known = np.isfinite(raster.ravel())
+    amounts = raster.ravel() * factor
+    if per == "pixel":
+        amounts = amounts / (city.cell**2 * areas_of(quads))
+    sums, areas = np.zeros(city.shape[:2]), np.zeros(city.shape[:2])
+    share_out(quads[known], amounts[known], sums, areas)
+    missing = areas < COVERED
     if missing.any() and fill is None:
         raise ValueError(
-            f"values say nothing about {missing.sum()} of the city's {missing.size} columns "
-            "(outside of bounds, or no data); "
-            "give a larger raster, or say with fill what to take there"
+            f"values say nothing about {missing.sum()} of the city's {missing.size} columns, or parts of them "
+            "(outside of bounds, or no data); give a larger raster, or say with fill what to take there"
         )
-    if fill is not None:
-        layer[missing] = fill
-    return layer
+    if fill is None:
+        return sums / areas
+    filled = fill * factor if per != "pixel" else fill / (city.cell**2 * float(np.mean(areas_of(quads))))
+    return sums + np.maximum(1.0 - areas, 0.0) * filled
+
+
+def part_around(
+    city: City, raster: np.ndarray, edges: np.ndarray, system: System | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """The pixels of a raster that may lie on the map, and their bounds; `ValueError` if there are none."""
+    (west, south), (east, north) = city.bounds[:, :2]
+    along = np.linspace(0.0, 1.0, 33)
+    border = np.concatenate(
+        [np.column_stack([west + along * (east - west), np.full(33, y)]) for y in (south, north)]
+        + [np.column_stack([np.full(33, x), south + along * (north - south)]) for x in (west, east)]
+    )
+    if system is not None:
+        border = system.from_lonlat(city.checked_reference().longitude_latitude(border))
+    rows, columns = raster.shape
+    width, height = (edges[2] - edges[0]) / columns, (edges[3] - edges[1]) / rows
+    first_column, last_column = (np.array([border[:, 0].min(), border[:, 0].max()]) - edges[0]) / width
+    first_row, last_row = (edges[3] - np.array([border[:, 1].max(), border[:, 1].min()])) / height
+    if last_column <= 0 or first_column >= columns or last_row <= 0 or first_row >= rows:
+        ranges = ", ".join(f"{border[:, a].min():g} to {border[:, a].max():g}" for a in range(2))
+        unit = "m (in degrees? say crs='EPSG:4326')" if system is None else f"in {system.name}"
+        raise ValueError(f"bounds must lie around the city, which is at {ranges} {unit}, got {edges.tolist()}")
+    c0, c1 = max(int(np.floor(first_column)) - 1, 0), min(int(np.ceil(last_column)) + 1, columns)
+    r0, r1 = max(int(np.floor(first_row)) - 1, 0), min(int(np.ceil(last_row)) + 1, rows)
+    part = np.array([edges[0] + c0 * width, edges[3] - r1 * height, edges[0] + c1 * width, edges[3] - r0 * height])
+    return raster[r0:r1, c0:c1], part
+
+
+def pixels_of(city: City, shape: tuple[int, ...], edges: np.ndarray, system: System | None) -> np.ndarray:
+    """Corners of all pixels, row by row, (rows · columns, 4, 2) [cells from the corner of the map]."""
+    x, y = np.linspace(edges[0], edges[2], shape[1] + 1), np.linspace(edges[3], edges[1], shape[0] + 1)
+    corners = np.stack(np.meshgrid(x, y), axis=-1)
+    if system is not None:
+        corners = city.checked_reference().east_north(system.to_lonlat(corners))
+    corners = (corners - city.origin[:2]) / city.cell
+    quads = [corners[1:, :-1], corners[1:, 1:], corners[:-1, 1:], corners[:-1, :-1]]
+    return np.stack(quads, axis=2).reshape(-1, 4, 2)
+
+
+def areas_of(quads: np.ndarray) -> np.ndarray:
+    """Areas (N,) of quadrilaterals (N, 4, 2), from their diagonals."""
+    one, other = quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1]
+    return np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]) / 2
 
 
 def road_layer(
@@ -97,7 +153,7 @@ def road_layer(
     *,
     cars_per_km: float | Sequence[float] = CARS_PER_KM,
     lane_width: float = LANE_WIDTH,
-    geographic: bool = False,
+    crs: Any = None,
 ) -> np.ndarray:
     """Share of the ground that cars cover, from the middle lines of roads: for `RiskMap(vehicle_share=...)`.
 
@@ -105,15 +161,15 @@ def road_layer(
     ----------
     city : City
     lines : sequence of (M, 2) arrays
-        Middle line of each road, x and y [m].
+        Middle line of each road, x and y [m], or in the coordinates of `crs`.
     width : float, or one for each line
         Of the roadway [m], above 0.
     cars_per_km : float, or one for each line
         K, cars per kilometre of a lane, at least 0.
     lane_width : float
         D_road [m], above 0.
-    geographic : bool
-        Lines are longitudes and latitudes on WGS84; the city must know its `reference`.
+    crs : anything that pyproj takes, optional
+        The reference system of the lines, such as "EPSG:4326" for degrees; the city must know its `reference`.
 
     Returns
     -------
@@ -124,7 +180,7 @@ def road_layer(
     ------
     ValueError
         If a line hasn't shape (M, 2) with M of at least 2 or is a mere point, a number is out of its range, or the
-        city has no reference for degrees.
+        city has no reference for `crs`.
     """
     checks.instance("city", city, City)
     if not isinstance(lines, Sequence | np.ndarray):
@@ -137,16 +193,18 @@ def road_layer(
     centers, half = column_centers(city).reshape(-1, 2), city.cell / 2
     left = shapely.box(*(centers - half).T, *(centers + half).T)
     layer = np.zeros(len(left))
+    system = None if crs is None else system_of(crs)
     for number in np.argsort(-covered, kind="stable"):  # the busiest first: what it covers is taken
         line = checks.numbers(f"lines[{number}]", lines[number])
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
             raise ValueError(f"lines[{number}] must be at least two finite points (M, 2), got shape {line.shape}")
-        if geographic:
-            check_degrees(f"lines[{number}]", line)
-            line = city.checked_reference().east_north(line)
+        if system is not None:
+            line = city.checked_reference().east_north(system.to_lonlat(line))
         elif np.ptp(line, axis=0).max() < SHORTEST_ROAD:
-            raise ValueError(f"lines[{number}] lies within {SHORTEST_ROAD:g} m; in degrees it needs geographic=True")
-        roadway = shapely.LineString(line).buffer(widths[number] / 2, cap_style="flat", join_style="mitre")
+            raise ValueError(f"lines[{number}] lies within {SHORTEST_ROAD:g} m; in degrees it needs crs='EPSG:4326'")
+        roadway = shapely.LineString(line).buffer(
+            widths[number] / 2, cap_style="flat", join_style="mitre", mitre_limit=LONGEST_MITRE
+        )
         near = np.flatnonzero(shapely.intersects(left, roadway))
         layer[near] += covered[number] * shapely.area(shapely.intersection(left[near], roadway)) / city.cell**2
         left[near] = shapely.difference(left[near], roadway)
@@ -188,8 +246,8 @@ def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = H
     checks.within("ground", open_ground, 0.0, 1.0, "(0 none, 1 industry)")
     if open_ground.shape not in ((), city.shape[:2]):
         raise ValueError(f"ground must have the city's ground plan {city.shape[:2]}, got {open_ground.shape}")
-    highest, above = city.cell * (city.shape[2] - 0.5), city.height_above_surface[..., -1]
-    roof = np.where(city.occupied[..., -1], city.cell * city.shape[2], np.round(highest - above, 6))
+    ground, top = city.range_of_ground[1], city.bounds[1, 2]
+    roof = np.round(np.where(city.occupied[..., -1], top, city.surface_below[..., -1]) - ground, 5)
     built = np.where(roof >= high, SHELTER["high buildings"], SHELTER["trees or low buildings"])
     return np.where(roof > 0, built, open_ground)
 
@@ -197,12 +255,6 @@ def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = H
 def column_centers(city: City) -> np.ndarray:
     """Centres (nx, ny, 2) of the columns of voxels, x and y [m]."""
     return np.stack(np.meshgrid(city.coordinates(0), city.coordinates(1), indexing="ij"), axis=-1)
-
-
-def check_degrees(name: str, points: np.ndarray) -> None:
-    """Refuse what can't be longitudes and latitudes (..., 2)."""
-    for axis, kind, most in ((0, "longitudes", 180.0), (1, "latitudes", 90.0)):
-        checks.within(f"{name}: {kind}", points[..., axis], -most, most, "degrees (metres? leave geographic out)")
 
 
 def per_line(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:
