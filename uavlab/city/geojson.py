@@ -19,6 +19,7 @@ from uavlab.city.footprints import (
     OTHER,
     PART,
     Footprint,
+    declared_system,
     features_of,
     footprints_of,
     kinds_of,
@@ -183,14 +184,6 @@ class Body(NamedTuple):
 def kind_of_geometry(feature: Mapping[str, Any]) -> Any:
     geometry = feature.get("geometry")
     return geometry.get("type") if isinstance(geometry, dict) else geometry
-
-
-def declared_system(document: Mapping[str, Any]) -> Any:
-    """What a "crs" member names; None where there is none."""
-    crs = document.get("crs")
-    if isinstance(crs, dict) and isinstance(crs.get("properties"), dict):
-        return crs["properties"].get("name") or crs["properties"].get("code")
-    return crs if isinstance(crs, str | int) else None
 
 
 def note_system(notes: Notes, system: System | None, given: Any, declared: Any, height_unit: str | None) -> None:
