@@ -1,4 +1,4 @@
-"""What `python -m uavlab` found, as one page: the scene, the profile of height and clearance, tables of what it measured.
+"""What `python -m uavlab` found, as one page: the scene, the profile of height and clearance, tables of measurements.
 
 The page needs neither Jupyter nor a network.
 """
