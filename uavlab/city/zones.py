@@ -14,7 +14,7 @@ from uavlab.city.buildings import convex_parts, extrude, footprint_polygon
 from uavlab.city.documents import read_json
 from uavlab.city.footprints import Footprint, declared_system, features_of, footprints_of
 from uavlab.city.lengths import length_in_metres
-from uavlab.city.place import system_for
+from uavlab.city.place import LOCAL, system_for
 from uavlab.city.source import Notes
 
 if TYPE_CHECKING:
@@ -102,7 +102,8 @@ def read_no_fly(
         Properties that hold the limits above ground, a number of metres or a text like "400 ft", or one for all [m];
         where they are absent, 0 and no upper limit.
     crs : anything that pyproj takes, or "local", optional
-        The reference system of the coordinates, as for `read_geojson`; "local": the city's own metres.
+        The reference system of the coordinates, as for `read_geojson`; "local": the city's own metres,
+        as where neither file nor city knows where on Earth it lies.
 
     Raises
     ------
@@ -116,7 +117,10 @@ def read_no_fly(
     if not zones:
         raise ValueError(f"{path.name} has no polygon with an area, so no zone")
     bounds = shapely.total_bounds([zone.polygons for zone in zones])
-    system = system_for(bounds, declared_system(documents[0]), crs, path.name)
+    declared = declared_system(documents[0])
+    if declared is None and crs is None and city.reference is None:
+        crs = LOCAL  # neither knows where on Earth it lies
+    system = system_for(bounds, declared, crs, path.name)
     polygons = np.array([zone.polygons for zone in zones], dtype=object)
     if system is not None:
         local = city.checked_reference().east_north(system.to_lonlat(shapely.get_coordinates(polygons)))

@@ -12,7 +12,15 @@ MIDPOINT_ROUNDS = 6
 """Then a leg has 64 parts. What still touches is held by points that stand twice or three times."""
 
 
-def smooth(route: Route, city: City, uav: UAV, *, min_clearance: float = 0.0) -> Curve:
+def smooth(
+    route: Route,
+    city: City,
+    uav: UAV,
+    *,
+    min_clearance: float = 0.0,
+    min_height: float = 0.0,
+    max_height: float = np.inf,
+) -> Curve:
     """A cubic B-spline with the waypoints as control points, repaired until it is as clear as the route.
 
     It cuts corners. Where the body would then touch an obstacle, or the curve enters a voxel that the planner had
@@ -28,6 +36,8 @@ def smooth(route: Route, city: City, uav: UAV, *, min_clearance: float = 0.0) ->
         Its body is a ball of its diameter.
     min_clearance : float
         Least clearance of the voxels that the curve passes through [m], as the planner was asked for it.
+    min_height, max_height : float
+        Least and greatest height above ground [m], as the planner was asked for them.
 
     Returns
     -------
@@ -42,7 +52,7 @@ def smooth(route: Route, city: City, uav: UAV, *, min_clearance: float = 0.0) ->
     checks.instance("route", route, Route)
     checks.instance("city", city, City)
     checks.instance("uav", uav, UAV)
-    blocked = city.blocked(min_clearance)
+    blocked = city.blocked(min_clearance, min_height=min_height, max_height=max_height)
     refuse_route(route, city, uav, blocked)
     control = route.points
     inserted = repeated = rounds = 0
