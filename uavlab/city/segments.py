@@ -198,26 +198,54 @@ def segment_clearance(runs, start, end, at_most):
 
 @compiled
 def segment_clearances(runs, clearance, cell, starts, ends, at_most):
-    """Of segments (N, 3) each; `clearance` is that of the voxels' centres [m], `cell` their edge [m]."""
+    """Of segments (N, 3) each, at most (N,); `clearance` is that of the voxels' centres [m], `cell` their edge [m]."""
     distances = np.empty(len(starts))
     for n in range(len(starts)):
         bound = distance_bound(clearance, cell, starts[n])
         if bound == np.inf:
-            distances[n] = at_most
+            distances[n] = at_most[n]
         else:
-            distances[n] = segment_clearance(runs, starts[n], ends[n], min(bound, at_most))
+            distances[n] = segment_clearance(runs, starts[n], ends[n], min(bound, at_most[n]))
     return distances
 
 
 @compiled
+def least_clearance(runs, clearance, cell, points):
+    """Least distance of a polyline (N, 3) to what is occupied [cells]; as `segment_clearances`."""
+    least = np.inf
+    for n in range(len(points)):
+        least = min(least, distance_bound(clearance, cell, points[n]))
+    if least == np.inf:
+        return least
+    for n in range(len(points) - 1):
+        if distance_to_be_seen(clearance, cell, points[n], points[n + 1]) < least:
+            least = segment_clearance(runs, points[n], points[n + 1], least)
+    return least if len(points) > 1 else segment_clearance(runs, points[0], points[0], least)
+
+
+@compiled
+def distance_to_be_seen(clearance, cell, start, end):
+    """A distance [cells] that a segment keeps, as far as the clearance of the voxel that it begins in tells; quickly."""
+    off, i, j, k = from_centre(clearance.shape, start)
+    length = math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2 + (end[2] - start[2]) ** 2)
+    return clearance[i, j, k] / cell - off - length - ROUNDING
+
+
+@compiled
 def distance_bound(clearance, cell, point):
-    """A distance [cells] that no point is farther than from what is occupied, a little above it."""
-    nx, ny, nz = clearance.shape
-    i = min(max(math.floor(point[0]), 0), nx - 1)
-    j = min(max(math.floor(point[1]), 0), ny - 1)
-    k = min(max(math.floor(point[2]), 0), nz - 1)
-    off = math.sqrt((point[0] - i - 0.5) ** 2 + (point[1] - j - 0.5) ** 2 + (point[2] - k - 0.5) ** 2)
+    """What the distance of a point to what is occupied can't be more than [cells]."""
+    off, i, j, k = from_centre(clearance.shape, point)
     return (clearance[i, j, k] / cell + off) * (1 + ROUNDING) + ROUNDING
+
+
+@compiled
+def from_centre(shape, point):
+    """How far a point is from the centre of its voxel, or of the nearest on the map [cells]; and that voxel."""
+    i = min(max(math.floor(point[0]), 0), shape[0] - 1)
+    j = min(max(math.floor(point[1]), 0), shape[1] - 1)
+    k = min(max(math.floor(point[2]), 0), shape[2] - 1)
+    off = math.sqrt((point[0] - i - 0.5) ** 2 + (point[1] - j - 0.5) ** 2 + (point[2] - k - 0.5) ** 2)
+    return off, i, j, k
 
 
 @compiled
