@@ -334,11 +334,12 @@ class City:
         first, last = np.broadcast_arrays(checked_points(start), checked_points(end))
         checks.refuse(np.asarray(at_most), np.asarray(at_most) >= 0, "at_most must be a distance in metres, at least 0")
         shape = np.broadcast_shapes(first.shape[:-1], np.shape(at_most))
-        within = np.broadcast_to(np.asarray(at_most, dtype=float) / self.cell, shape)
-        one, other = (np.broadcast_to((ends - self.origin) / self.cell, (*shape, 3)) for ends in (first, last))
-        distances = segment_clearances(
-            self.runs, self.clearance, self.cell, one.reshape(-1, 3).copy(), other.reshape(-1, 3).copy(), within.flatten()
+        within = np.broadcast_to(np.asarray(at_most, dtype=float) / self.cell, shape).flatten()
+        starts, ends = (
+            np.array(np.broadcast_to((points - self.origin) / self.cell, (*shape, 3))).reshape(-1, 3)
+            for points in (first, last)
         )
+        distances = segment_clearances(self.runs, self.clearance, self.cell, starts, ends, within)
         return self.cell * distances.reshape(shape)
 
     def blocked(self, min_clearance: float = 0.0, *, min_height: float = 0.0, max_height: float = np.inf) -> np.ndarray:

@@ -218,14 +218,14 @@ def least_clearance(runs, clearance, cell, points):
     if least == np.inf:
         return least
     for n in range(len(points) - 1):
-        if distance_to_be_seen(clearance, cell, points[n], points[n + 1]) < least:
+        if least_to_expect(clearance, cell, points[n], points[n + 1]) < least:
             least = segment_clearance(runs, points[n], points[n + 1], least)
     return least if len(points) > 1 else segment_clearance(runs, points[0], points[0], least)
 
 
 @compiled
-def distance_to_be_seen(clearance, cell, start, end):
-    """A distance [cells] that a segment keeps, as far as the clearance of the voxel that it begins in tells; quickly."""
+def least_to_expect(clearance, cell, start, end):
+    """A distance [cells] that a segment certainly keeps, as the clearance where it begins tells, quickly."""
     off, i, j, k = from_centre(clearance.shape, start)
     length = math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2 + (end[2] - start[2]) ** 2)
     return clearance[i, j, k] / cell - off - length - ROUNDING
@@ -272,9 +272,7 @@ def least_room(lowest, highest, start, end):
     return room
 
 
-def height_limits(
-    low: np.ndarray, high: np.ndarray, bottom: float, cell: float
-) -> tuple[np.ndarray, np.ndarray]:
+def height_limits(low: np.ndarray, high: np.ndarray, bottom: float, cell: float) -> tuple[np.ndarray, np.ndarray]:
     """Least and greatest z [cells] from heights [m] above a map's bottom; widened by rounding; not to be written to."""
     limits = (low - bottom) / cell - ROUNDING, (high - bottom) / cell + ROUNDING
     for array in limits:

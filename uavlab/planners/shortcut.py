@@ -75,10 +75,10 @@ def shortcut(
     best, before = cheapest_subset(points, bounds, prices, cheapest, same)
     if not np.isfinite(best).all():
         leg = int(np.flatnonzero(~np.isfinite(best))[0])
+        ends = f"{leg - 1} {checks.show(free.points[leg - 1])} and {leg} {checks.show(free.points[leg])}"
         raise ValueError(
-            f"route comes too near to an obstacle or a zone, too low or too high, between waypoints {leg - 1} {checks.show(free.points[leg - 1])} "
-            f"and {leg} {checks.show(free.points[leg])}: shorten only routes that themselves keep "
-            f"min_clearance={min_clearance:g} m and the heights all along"
+            f"route comes too near to an obstacle or a zone, too low or too high, between waypoints {ends}: "
+            f"shorten only routes that themselves keep min_clearance={min_clearance:g} m and the heights all along"
         )
     kept = [len(points) - 1]
     while kept[-1] != 0:
@@ -149,7 +149,7 @@ def cheapest_subset(points, bounds, price, least_price, same):
     best[0] = 0.0
     for j in range(1, len(points)):
         free, _ = keeps(bounds, points[j - 1], points[j])
-        most = best[j - 1] + line_price(price, points[j - 1], points[j], np.inf) + same if free else np.inf
+        most = best[j - 1] + line_price(price, least_price, points[j - 1], points[j], np.inf) + same if free else np.inf
         for i in range(j):
             limit = min(best[j] - same, most) - best[i]
             if least_price * distance(points[i], points[j]) >= limit:
@@ -161,7 +161,7 @@ def cheapest_subset(points, bounds, price, least_price, same):
             if not free:
                 in_the_way[i] = box
                 continue
-            cost = line_price(price, points[i], points[j], limit)
+            cost = line_price(price, least_price, points[i], points[j], limit)
             if cost < limit:
                 best[j] = best[i] + cost
                 before[j] = i
@@ -171,7 +171,7 @@ def cheapest_subset(points, bounds, price, least_price, same):
 
 
 @compiled
-def line_price(price, start, end, limit):
+def line_price(price, least_price, start, end, limit):
     """Integral of the price along a straight line [cells], its length without one; infinite where over the limit."""
     length = distance(start, end)
     if price is None:
@@ -183,7 +183,7 @@ def line_price(price, start, end, limit):
         i, j, k = voxels[m]
         cost += (leave[m] - entered) * length * price[i, j, k]
         entered = leave[m]
-        if cost >= limit:
+        if cost + (1.0 - entered) * length * least_price >= limit:
             return np.inf
     return cost
 
