@@ -13,13 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab.checks import frozen
-from uavlab.city.segments import (
-    Runs,
-    least_to_expect,
-    height_limits,
-    segment_clearance,
-    slack_of,
-)
+from uavlab.city.bounds import height_limits, slack_of
+from uavlab.city.segments import Runs, least_to_expect, segment_clearance
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
 from uavlab.planners.least_risk import Limits
@@ -56,8 +51,8 @@ def sky_of(risk_map: RiskMap, price: np.ndarray, limits: Limits) -> Sky:
     city = risk_map.city
     lowest, highest = city.range_of_ground
     low = np.maximum(city.surface_below + limits.safe_height, (highest + limits.min_height)[..., None])
-    heights = height_limits(low, lowest + limits.max_height, city.origin[2], city.cell)
-    keep = max(limits.min_clearance / city.cell - slack_of(city.origin, city.shape, city.cell), 0.0)
+    heights = height_limits(city, low, lowest + limits.max_height)
+    keep = max(limits.min_clearance / city.cell - slack_of(city), 0.0)
     clearance = city.clearance / city.cell if keep > 0 else np.empty((0, 0, 0))
     return Sky(price, city.blocked(), *heights, city.runs, frozen(clearance), keep, limits.max_turn, limits.max_pitch)
 

@@ -7,23 +7,14 @@ A line that touches the edge or the corner of an obstacle is blocked, the same r
 
 import math
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.city.segments import (
-    ROUNDING,
-    Runs,
-    distance_to_box,
-    height_limits,
-    least_room,
-    nearest_run,
-    runs_of,
-    slack_of,
-)
+from uavlab.city.bounds import bounds_of, keeps
+from uavlab.city.segments import ROUNDING, distance_to_box
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
 from uavlab.planners.question import checked_price
@@ -92,50 +83,6 @@ def shortcut(
     return replace(route, points=points, planner=f"{route.planner} + shortcut", cost=cost)
 
 
-class Bounds(NamedTuple):
-    """What a leg must keep, for compiled code [cells]."""
-
-    obstacles: Runs
-    keep: float  # from obstacles
-    zones: Runs
-    apart: float  # from no-fly zones
-    lowest: np.ndarray  # (nx, ny)
-    highest: np.ndarray
-    limited: bool  # whether there are such heights at all
-    shape: tuple[int, int, int]
-
-
-def bounds_of(city: City, min_clearance: float, min_height: float, max_height: float) -> Bounds:
-    """The bounds of a city; a touch is too near, and what is as near as asked for, to rounding, is far enough."""
-    city.blocked(min_clearance, min_height=min_height, max_height=max_height)  # refuses what is out of range
-    slack = slack_of(city.origin, city.shape, city.cell)
-    ground = city.range_of_ground
-    heights = height_limits(ground[1] + min_height, ground[0] + max_height, city.origin[2], city.cell)
-    return Bounds(
-        city.runs, max(min_clearance / city.cell - slack, slack),
-        runs_of(city.in_no_fly), slack,
-        *heights, min_height > 0 or max_height < np.inf, city.shape,
-    )  # fmt: skip
-
-
-@compiled
-def keeps(bounds, start, end):
-    """Whether a leg keeps its bounds, and else the box that is too near: (i, j, low, high, least distance)."""
-    nobody = (-1, 0, 0, 0, 0.0)
-    for point in (start, end):
-        for axis in range(3):
-            if not 0 <= point[axis] < bounds.shape[axis]:
-                return False, nobody
-    if bounds.limited and least_room(bounds.lowest, bounds.highest, start, end) < 0:
-        return False, nobody
-    for runs, keep in ((bounds.zones, bounds.apart), (bounds.obstacles, bounds.keep)):
-        near = nearest_run(runs, start, end, keep, keep)
-        if near.column >= 0:
-            i, j = divmod(near.column, bounds.shape[1])
-            return False, (i, j, runs.low[near.run], runs.high[near.run], keep)
-    return True, nobody
-
-
 @compiled
 def cheapest_subset(points, bounds, price, least_price, same):
     """Least cost from the first to each waypoint, and the waypoint before it on the way.
@@ -148,7 +95,7 @@ def cheapest_subset(points, bounds, price, least_price, same):
     in_the_way = [(-1, 0, 0, 0, 0.0) for _ in points]
     best[0] = 0.0
     for j in range(1, len(points)):
-        free, _ = keeps(bounds, points[j - 1], points[j])
+        free, _ = keeps(bounds, points[j - 1], points[j], 0.0, 0.0)
         most = best[j - 1] + line_price(price, least_price, points[j - 1], points[j], np.inf) + same if free else np.inf
         for i in range(j):
             limit = min(best[j] - same, most) - best[i]
@@ -157,7 +104,7 @@ def cheapest_subset(points, bounds, price, least_price, same):
             a, b, low, high, keep = in_the_way[i]
             if a >= 0 and distance_to_box(points[i], points[j], a, b, low, high) < keep:
                 continue
-            free, box = keeps(bounds, points[i], points[j])
+            free, box = keeps(bounds, points[i], points[j], 0.0, 0.0)
             if not free:
                 in_the_way[i] = box
                 continue

@@ -242,9 +242,10 @@ def refine(
     count = max(int(route.length / risk_map.city.cell / SPACING), 2) + 1
     one_by_one(measure, near(task, route, risk_map, count - 2), PER_SEGMENT // 2, budget, rng)
     better = route_of(measure, risk_map, f"{route.planner} + refined")
-    cost = route.integral(risk_map.city, task.sky.price) / risk_map.city.cell
+    kept = keeps_its_place(task, route, risk_map)
+    cost = route.integral(risk_map.city, task.sky.price) / risk_map.city.cell if kept else np.inf
     info = {"evaluations": budget, "history": np.minimum(measure.history, cost), "elapsed": time.perf_counter() - began}
-    if better.cost < cost or not keeps_its_place(task, route, risk_map):
+    if better.cost < cost or not kept:
         route, cost = better, better.cost
     route = replace(route, cost=cost, info={**route.info, **info})
     return with_vertical_legs(route, risk_map.city, ends, price)
