@@ -10,6 +10,7 @@ import numpy as np
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.segments import least_clearance
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,22 +111,32 @@ class Route:
         distance : (M,) array
             Distance flown at the middle of the stay in each voxel [m].
         clearance : (M,) array
-            `city.clearance` of each voxel that the route passes through [m]; 0 outside of the map. It is taken at
-            the voxel's centre; off the centre the true distance differs by at most half a voxel's diagonal.
+            Least distance to an obstacle's surface during the stay [m]; 0 outside of the map.
         """
         checks.instance("city", city, City)
         if len(self.points) == 0:
             return np.empty(0), np.empty(0)
         index, length = city.voxels_along(self.points)
+        leave = np.cumsum(length)
+        start, end = (
+            np.stack([np.interp(flown, self.distance, axis) for axis in self.points.T], axis=1)
+            for flown in (leave - length, leave)
+        )
         inside = ((index >= 0) & (index < city.shape)).all(axis=1)
-        clearance = np.zeros(len(index))
-        clearance[inside] = city.clearance[tuple(index[inside].T)]
-        return np.cumsum(length) - length / 2, clearance
+        return leave - length / 2, np.where(inside, city.segment_distance(start, end), 0.0)
 
     def clearance(self, city: City) -> float:
-        """Smallest clearance along the route [m]; NaN for a route without points."""
-        clearance = self.clearance_profile(city)[1]
-        return float(clearance.min()) if len(clearance) else float("nan")
+        """Least distance to an obstacle's surface on the whole way [m].
+
+        Exact, whatever the voxels that are passed; 0 where it leaves the map, NaN for a route without points.
+        """
+        checks.instance("city", city, City)
+        if len(self.points) == 0:
+            return float("nan")
+        if not city.inside(self.points).all():
+            return 0.0
+        points = (self.points - city.origin) / city.cell
+        return city.cell * float(least_clearance(city.runs, city.clearance, city.cell, points))
 
     def integral(self, city: City, values: np.ndarray) -> float:
         """∫ values ds along the route, by exact voxel traversal; the values hold for a whole voxel.

@@ -25,6 +25,7 @@ from uavlab.city.rasterise import (
     rasterise,
     touches,
 )
+from uavlab.city.segments import Runs, runs_of, segment_clearances
 from uavlab.city.source import Source
 from uavlab.city.terrain import Terrain, ground_and_top
 from uavlab.city.voxels import distances_to_obstacle, squared_clearance, voxels_on_segment
@@ -302,6 +303,44 @@ class City:
         near = 4.0 if exact_within is None else exact_within / self.cell
         distances = distances_to_obstacle(self.occupied, self.clearance, self.cell, cells, near)
         return self.cell * distances.reshape(points.shape[:-1])
+
+    @cached_property
+    def runs(self) -> Runs:
+        """The occupied voxels as boxes, one above the other in each column, for compiled code."""
+        return runs_of(self.occupied)
+
+    def segment_distance(
+        self, start: npt.ArrayLike, end: npt.ArrayLike, *, at_most: npt.ArrayLike = np.inf
+    ) -> np.ndarray:
+        """Least distance of straight lines, all along, to the nearest obstacle's surface.
+
+        Parameters
+        ----------
+        start, end : (..., 3) arrays
+            [m]; of what lies beyond the map nothing is known, only the obstacles on it count.
+        at_most : float, or (...) array
+            Where it is more than this [m], this is given instead, and found sooner.
+
+        Returns
+        -------
+        (...) array
+            [m]; exact; 0 through an obstacle, infinite where there is none at all.
+
+        Raises
+        ------
+        ValueError
+            If `start` or `end` haven't shape (..., 3) or are not finite, or `at_most` is negative.
+        """
+        first, last = np.broadcast_arrays(checked_points(start), checked_points(end))
+        checks.refuse(np.asarray(at_most), np.asarray(at_most) >= 0, "at_most must be a distance in metres, at least 0")
+        shape = np.broadcast_shapes(first.shape[:-1], np.shape(at_most))
+        within = np.broadcast_to(np.asarray(at_most, dtype=float) / self.cell, shape).flatten()
+        starts, ends = (
+            np.array(np.broadcast_to((points - self.origin) / self.cell, (*shape, 3))).reshape(-1, 3)
+            for points in (first, last)
+        )
+        distances = segment_clearances(self.runs, self.clearance, self.cell, starts, ends, within)
+        return self.cell * distances.reshape(shape)
 
     def blocked(self, min_clearance: float = 0.0, *, min_height: float = 0.0, max_height: float = np.inf) -> np.ndarray:
         """Where a UAV may not be: obstacles and what is near them, no-fly zones, and what is too low or too high.

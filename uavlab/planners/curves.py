@@ -1,7 +1,8 @@
 """What a curve through a risk map costs, and how far it breaks the limits: exactly, voxel by voxel.
 
-A curve is a line of short straight legs. Its cost is the integral of the price; its violations are the metres in voxels
-that may not be flown, and the angles by which legs turn or climb too much. An optimiser finds every gap that
+A curve is a line of short straight legs. Its cost is the integral of the price; its violations are the metres where it
+may not be, and the angles by which legs turn or climb too much. Heights and clearance hold at each of its points, not
+only at the centres of voxels as for planners on the grid. An optimiser finds every gap that
 samples along the way would leave: measured at a quarter of a voxel, it claims what isn't so.
 """
 
@@ -11,9 +12,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from uavlab.checks import frozen
+from uavlab.city.bounds import height_limits, slack_of
+from uavlab.city.segments import Runs, least_to_expect, segment_clearance
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
-from uavlab.planners.least_risk import Limits, query_of
+from uavlab.planners.least_risk import Limits
 from uavlab.planners.question import Ends
 from uavlab.risk import RiskMap
 from uavlab.spline.basis import cubic_bspline, fitted, spread, subdivided
@@ -28,19 +32,35 @@ LONGEST = 1000
 """No curve is as long as so many times the edges of the map; what that costs, one that breaks a limit costs more."""
 
 
-class Terrain(NamedTuple):
+class Sky(NamedTuple):
     """A map for compiled code."""
 
     price: np.ndarray  # (nx, ny, nz): cost per cell of way
-    closed: np.ndarray  # (nx, ny, nz) bool
+    closed: np.ndarray  # (nx, ny, nz) bool: obstacles and no-fly zones
+    lowest: np.ndarray  # (nx, ny, nz): least z of a point in each voxel [cells]
+    highest: np.ndarray  # (nx, ny): greatest z in each column [cells]
+    obstacles: Runs
+    clearance: np.ndarray  # (nx, ny, nz): of the centres [cells]; not looked at where `keep` is 0
+    keep: float  # least distance to obstacles [cells]
     max_turn: float
     max_pitch: float
+
+
+def sky_of(risk_map: RiskMap, price: np.ndarray, limits: Limits) -> Sky:
+    """The limits at each point of a curve, at a price (nx, ny, nz) per cell of way."""
+    city = risk_map.city
+    lowest, highest = city.range_of_ground
+    low = np.maximum(city.surface_below + limits.safe_height, (highest + limits.min_height)[..., None])
+    heights = height_limits(city, low, lowest + limits.max_height)
+    keep = max(limits.min_clearance / city.cell - slack_of(city), 0.0)
+    clearance = city.clearance / city.cell if keep > 0 else np.empty((0, 0, 0))
+    return Sky(price, city.blocked(), *heights, city.runs, frozen(clearance), keep, limits.max_turn, limits.max_pitch)
 
 
 class Task(NamedTuple):
     """Which curves to measure; all positions in cells."""
 
-    terrain: Terrain
+    sky: Sky
     source: np.ndarray
     target: np.ndarray
     spline: bool  # curves are B-splines with these control points, or else lines with these corners
@@ -53,8 +73,8 @@ class Task(NamedTuple):
 
     def costs(self, control: np.ndarray, per_segment: int) -> np.ndarray:
         """Costs (N,) of curves (N, K + 2, 3); whichever breaks a limit costs more than any that doesn't."""
-        costs, closed, angles = costs_of(self.terrain, self.lines(control, per_segment))
-        broken = closed + angles
+        costs, shut, angles = costs_of(self.sky, self.lines(control, per_segment))
+        broken = shut + angles
         return costs + np.where(broken > 0, self.unflyable + self.breach * broken, 0.0)
 
     def finer(self, control: np.ndarray) -> np.ndarray:
@@ -72,13 +92,11 @@ class Task(NamedTuple):
 
 def task_of(risk_map: RiskMap, ends: Ends, price: np.ndarray, limits: Limits, spline: bool) -> Task:
     """The question of `least_risk`, for curves: from the centre of the start's voxel to that of the goal's."""
-    codes = ends.source, ends.target
-    blocked = query_of(risk_map, price, *codes, limits).blocked
-    price = price.reshape(risk_map.city.shape)
-    source, target = risk_map.city.index_of(np.array(codes)) + 0.5
-    terrain = Terrain(price, blocked, limits.max_turn, limits.max_pitch)
-    highest = float(price[~blocked].max())
-    return Task(terrain, source, target, spline, 10 * highest, LONGEST * sum(price.shape) * highest)
+    city = risk_map.city
+    source, target = city.index_of(np.array((ends.source, ends.target))) + 0.5
+    sky = sky_of(risk_map, price.reshape(city.shape), limits)
+    highest = float(sky.price[~sky.closed].max())
+    return Task(sky, source, target, spline, 10 * highest, LONGEST * sum(city.shape) * highest)
 
 
 class Measure:
@@ -112,39 +130,49 @@ class Measure:
 
 
 @compiled
-def costs_of(terrain, lines):
-    """Of polylines (N, P, 3): cost [price·cells], way in closed voxels [cells], and excess of angles [rad]."""
-    costs, closed, angles = np.zeros(len(lines)), np.zeros(len(lines)), np.zeros(len(lines))
+def costs_of(sky, lines):
+    """Of polylines (N, P, 3): cost [price·cells], way where it may not be [cells], and excess of angles [rad]."""
+    costs, shut, angles = np.zeros(len(lines)), np.zeros(len(lines)), np.zeros(len(lines))
     for n in range(len(lines)):
         for p in range(lines.shape[1] - 1):
-            cost, shut = along(terrain, lines[n, p], lines[n, p + 1])
+            cost, breach = along(sky, lines[n, p], lines[n, p + 1])
             costs[n] += cost
-            closed[n] += shut
-            angles[n] += excess(terrain, lines[n], p)
-    return costs, closed, angles
+            shut[n] += breach
+            angles[n] += excess(sky, lines[n], p)
+    return costs, shut, angles
 
 
 @compiled
-def along(terrain, start, end):
-    """∫ price ds over a straight leg, and how much of it is in closed voxels or off the map [cells]."""
-    length = math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2 + (end[2] - start[2]) ** 2)
+def along(sky, start, end):
+    """∫ price ds over a straight leg, and how much of it is where it may not be [cells].
+
+    That is the stays in voxels that are closed, off the map, or in part too low or too high; the whole leg, if it
+    comes too near to an obstacle.
+    """
+    climb = end[2] - start[2]
+    length = math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2 + climb**2)
     voxels, leave = voxels_on_segment(start, end)
-    nx, ny, nz = terrain.closed.shape
+    nx, ny, nz = sky.closed.shape
     cost = shut = entered = 0.0
     for m in range(len(voxels)):
         i, j, k = voxels[m]
         stay = (leave[m] - entered) * length
-        entered = leave[m]
         if 0 <= i < nx and 0 <= j < ny and 0 <= k < nz:
-            cost += stay * terrain.price[i, j, k]
-            shut += stay * terrain.closed[i, j, k]
+            z, w = start[2] + entered * climb, start[2] + leave[m] * climb
+            cost += stay * sky.price[i, j, k]
+            if sky.closed[i, j, k] or min(z, w) < sky.lowest[i, j, k] or max(z, w) > sky.highest[i, j]:
+                shut += stay
         else:
             shut += stay
+        entered = leave[m]
+    near = sky.keep > 0.0 and shut < length and least_to_expect(sky.clearance, 1.0, start, end) < sky.keep
+    if near and segment_clearance(sky.obstacles, start, end, sky.keep) < sky.keep:
+        shut = length
     return cost, shut
 
 
 @compiled
-def excess(terrain, line, p):
+def excess(sky, line, p):
     """How far leg p climbs too much and turns too much against the leg before it [rad].
 
     Legs shorter than a voxel may turn only in proportion: `max_turn` is per corner and per length of a voxel. A
@@ -152,7 +180,7 @@ def excess(terrain, line, p):
     """
     dx, dy, dz = line[p + 1] - line[p]
     level = math.hypot(dx, dy)
-    over = max(0.0, abs(math.atan2(dz, level)) - terrain.max_pitch - SLACK)
+    over = max(0.0, abs(math.atan2(dz, level)) - sky.max_pitch - SLACK)
     if level <= SLACK:
         return over
     for before in range(p - 1, -1, -1):
@@ -161,16 +189,16 @@ def excess(terrain, line, p):
         if level_before > SLACK:
             turn = abs(math.atan2(ex * dy - ey * dx, ex * dx + ey * dy))
             mean = 0.5 * (math.hypot(level, dz) + math.hypot(level_before, ez))
-            return over + max(0.0, turn - terrain.max_turn * min(1.0, mean) - SLACK)
+            return over + max(0.0, turn - sky.max_turn * min(1.0, mean) - SLACK)
     return over
 
 
 def breaches(task: Task, line: np.ndarray, cell: float) -> str:
     """Words for the limits that a curve (P, 3) breaks."""
-    _, closed, _ = costs_of(task.terrain, line[None])
-    climbs = costs_of(task.terrain._replace(max_turn=np.inf), line[None])[2]
-    turns = costs_of(task.terrain._replace(max_pitch=np.inf), line[None])[2]
-    words = [f"flies {closed[0] * cell:.1f} m where it may not"] if closed[0] > 0 else []
+    _, shut, _ = costs_of(task.sky, line[None])
+    climbs = costs_of(task.sky._replace(max_turn=np.inf), line[None])[2]
+    turns = costs_of(task.sky._replace(max_pitch=np.inf), line[None])[2]
+    words = [f"flies {shut[0] * cell:.1f} m where it may not"] if shut[0] > 0 else []
     words += ["climbs more than max_pitch"] if climbs[0] > 0 else []
     words += ["turns more than max_turn"] if turns[0] > 0 else []
     return ", ".join(words)

@@ -1,8 +1,8 @@
 """Any-angle shortcuts: leave out the waypoints that a straight line makes needless.
 
 A route over 26 neighbours zigzags. Among all ways to skip waypoints, dynamic programming finds the cheapest: best[j] is
-the least over i < j of best[i] plus the straight line from i to j, if nothing is in between. A line that touches
-the edge or the corner of an obstacle is blocked, the same rule as for the moves on the grid.
+the least over i < j of best[i] plus the straight line from i to j, if it keeps its distance to obstacles all along.
+A line that touches the edge or the corner of an obstacle is blocked, the same rule as for the moves on the grid.
 """
 
 import math
@@ -13,13 +13,12 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.bounds import bounds_of, keeps
+from uavlab.city.segments import ROUNDING, distance_to_box
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
 from uavlab.planners.question import checked_price
 from uavlab.route import Route
-
-ROUNDING = 1e-9
-"""What is nearer than this [cells] touches; costs that differ by less are the same."""
 
 
 def shortcut(
@@ -41,9 +40,10 @@ def shortcut(
     price : (nx, ny, nz) array, optional
         Cost of a metre in each voxel, the one that the route was planned with; a leg costs the integral along it.
     min_clearance : float
-        Clearance [m] that no voxel touched by the route may fall below.
+        Least distance [m] that each leg keeps to obstacles, all along. 0: it touches none.
     min_height, max_height : float
-        As for `astar` [m]. Vertical take-off and landing stay as they are.
+        Least and greatest height above ground [m], in each column that a leg passes: above the highest ground there,
+        below the lowest. Vertical take-off and landing stay as they are.
 
     Returns
     -------
@@ -54,21 +54,22 @@ def shortcut(
     Raises
     ------
     ValueError
-        If the route itself passes through a blocked voxel; the message says between which waypoints.
+        If the route itself doesn't keep what is asked for; the message says between which waypoints.
     """
     if not route.reached or len(route.points) < 2:
         return route
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
     free = route.en_route
     points = (free.points - city.origin) / city.cell
-    blocked = city.blocked(min_clearance, min_height=min_height, max_height=max_height)
-    best, before = cheapest_subset(points, blocked, prices, cheapest)
+    same = ROUNDING if prices is None else ROUNDING * float(prices.max())
+    bounds = bounds_of(city, min_clearance, min_height, max_height)
+    best, before = cheapest_subset(points, bounds, prices, cheapest, same)
     if not np.isfinite(best).all():
         leg = int(np.flatnonzero(~np.isfinite(best))[0])
+        ends = f"{leg - 1} {checks.show(free.points[leg - 1])} and {leg} {checks.show(free.points[leg])}"
         raise ValueError(
-            f"route passes through a blocked voxel between waypoints {leg - 1} {checks.show(free.points[leg - 1])} "
-            f"and {leg} {checks.show(free.points[leg])}: shorten only routes that themselves keep "
-            f"min_clearance={min_clearance:g} m"
+            f"route comes too near to an obstacle or a zone, too low or too high, between waypoints {ends}: "
+            f"shorten only routes that themselves keep min_clearance={min_clearance:g} m and the heights all along"
         )
     kept = [len(points) - 1]
     while kept[-1] != 0:
@@ -83,27 +84,63 @@ def shortcut(
 
 
 @compiled
-def cheapest_subset(points, blocked, price, least_price):
-    """Least cost from the first to each waypoint, and the waypoint before it on the way."""
+def cheapest_subset(points, bounds, price, least_price, same):
+    """Least cost from the first to each waypoint, and the waypoint before it on the way.
+
+    Costs that differ by less than `same` are the same; of those, the way that skips most wins. What was in the way of
+    a leg from a waypoint is probably in the way of the next one from there, too, so that is looked at first.
+    """
     best = np.full(len(points), np.inf)
     before = np.zeros(len(points), np.int64)
+    in_the_way = [(-1, 0, 0, 0, 0.0) for _ in points]
     best[0] = 0.0
     for j in range(1, len(points)):
+        free, _ = keeps(bounds, points[j - 1], points[j], 0.0, 0.0)
+        most = best[j - 1] + line_price(price, least_price, points[j - 1], points[j], np.inf) + same if free else np.inf
         for i in range(j):
-            at_least = least_price * distance(points[i], points[j])
-            if best[i] + at_least < best[j] - ROUNDING:
-                cost = best[i] + line_cost(blocked, price, points[i], points[j])
-                if cost < best[j] - ROUNDING:
-                    best[j] = cost
-                    before[j] = i
+            limit = min(best[j] - same, most) - best[i]
+            if least_price * distance(points[i], points[j]) >= limit:
+                continue
+            a, b, low, high, keep = in_the_way[i]
+            if a >= 0 and distance_to_box(points[i], points[j], a, b, low, high) < keep:
+                continue
+            free, box = keeps(bounds, points[i], points[j], 0.0, 0.0)
+            if not free:
+                in_the_way[i] = box
+                continue
+            cost = line_price(price, least_price, points[i], points[j], limit)
+            if cost < limit:
+                best[j] = best[i] + cost
+                before[j] = i
         if best[j] == np.inf:
             break
     return best, before
 
 
 @compiled
+def line_price(price, least_price, start, end, limit):
+    """Integral of the price along a straight line [cells], its length without one; infinite where over the limit."""
+    length = distance(start, end)
+    if price is None:
+        return length
+    voxels, leave = voxels_on_segment(start, end)
+    cost = 0.0
+    entered = 0.0
+    for m in range(len(voxels)):
+        i, j, k = voxels[m]
+        cost += (leave[m] - entered) * length * price[i, j, k]
+        entered = leave[m]
+        if cost + (1.0 - entered) * length * least_price >= limit:
+            return np.inf
+    return cost
+
+
+@compiled
 def line_cost(blocked, price, start, end):
-    """Integral of the price along a straight line [cells], its length without one; infinite if it is blocked."""
+    """Integral of the price along a straight line [cells], its length without one; infinite if it touches a voxel.
+
+    Of blocked ones; for legs of a step or two.
+    """
     if touches_blocked(blocked, start, end, 0.0):
         return np.inf
     voxels, leave = voxels_on_segment(start, end)

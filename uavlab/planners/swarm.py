@@ -17,7 +17,7 @@ from uavlab import checks
 from uavlab.optimizers import Result, bas, pso, pso_bas
 from uavlab.optimizers.particle_swarm import SWARM
 from uavlab.planners.ant_colony import ANTS, ant_colony
-from uavlab.planners.curves import PER_SEGMENT, Measure, Task, breaches, task_of
+from uavlab.planners.curves import PER_SEGMENT, Measure, Task, breaches, costs_of, task_of
 from uavlab.planners.least_risk import (
     MAX_PITCH,
     MAX_TURN,
@@ -242,9 +242,10 @@ def refine(
     count = max(int(route.length / risk_map.city.cell / SPACING), 2) + 1
     one_by_one(measure, near(task, route, risk_map, count - 2), PER_SEGMENT // 2, budget, rng)
     better = route_of(measure, risk_map, f"{route.planner} + refined")
-    cost = route.integral(risk_map.city, task.terrain.price) / risk_map.city.cell
+    kept = keeps_its_place(task, route, risk_map)
+    cost = route.integral(risk_map.city, task.sky.price) / risk_map.city.cell if kept else np.inf
     info = {"evaluations": budget, "history": np.minimum(measure.history, cost), "elapsed": time.perf_counter() - began}
-    if better.cost < cost:
+    if better.cost < cost or not kept:
         route, cost = better, better.cost
     route = replace(route, cost=cost, info={**route.info, **info})
     return with_vertical_legs(route, risk_map.city, ends, price)
@@ -273,7 +274,7 @@ class Space(NamedTuple):
 def space_of(task: Task, waypoints: int, encoding: str) -> Space:
     """Points anywhere on the map, or on vertical planes that cut the way from start to goal evenly."""
     ends = np.stack([task.source, task.target])
-    size = np.array(task.terrain.closed.shape, float) - 1e-9  # within the last voxel
+    size = np.array(task.sky.closed.shape, float) - 1e-9  # within the last voxel
     if encoding == "points":
         return Space(ends, np.zeros((waypoints, 3)), np.eye(3), np.tile(np.stack([0 * size, size], 1), (waypoints, 1)))
     side = sideways_of(task)
@@ -336,7 +337,7 @@ def arcs_between(task: Task, waypoints: int, count: int, rng: np.random.Generato
     sideways = (rng.standard_normal((count, HUMPS)) * WIDTH * distance / order) @ waves
     upwards = np.abs(rng.standard_normal((count, 1))) * HEIGHT @ waves[:1]
     curves = straight + sideways[..., None] * sideways_of(task) + upwards[..., None] * (0.0, 0.0, 1.0)
-    return np.clip(curves, 0.0, np.array(task.terrain.closed.shape) - 1e-9)
+    return np.clip(curves, 0.0, np.array(task.sky.closed.shape) - 1e-9)
 
 
 def near(task: Task, route: Route, risk_map: RiskMap, waypoints: int) -> np.ndarray:
@@ -348,6 +349,12 @@ def near(task: Task, route: Route, risk_map: RiskMap, waypoints: int) -> np.ndar
     control = task.nearest(points, waypoints + 2)
     control[0], control[-1] = task.source, task.target
     return control
+
+
+def keeps_its_place(task: Task, route: Route, risk_map: RiskMap) -> bool:
+    """Whether a route is nowhere where it may not be, all along."""
+    points = (route.points - risk_map.city.origin) / risk_map.city.cell
+    return not costs_of(task.sky, points[None])[1].any()
 
 
 def one_by_one(

@@ -26,10 +26,7 @@ UNRESOLVED = 0.5
 """A change of direction between two points [rad] in which the curvature of neither may be the greatest."""
 
 CONTACT = 0.02
-"""Share of its radius by which a body may overlap an obstacle before that counts as contact; half of it for the route.
-
-The distance between two points a quarter of the radius apart is known to 1/128 of the radius.
-"""
+"""Share of its radius by which a body may overlap an obstacle before that counts as contact; half of it for the route."""
 
 
 def curvature(velocity: npt.ArrayLike, acceleration: npt.ArrayLike) -> np.ndarray:
@@ -112,6 +109,8 @@ class Curve:
         Whose route it smooths.
     info : dict
         What `smooth` noted.
+    takeoff, landing : int
+        How many of its first and last segments are vertical take-off and landing, between which and the rest it hovers.
 
     Raises
     ------
@@ -124,6 +123,8 @@ class Curve:
     step: float = 0.1
     planner: str = "curve"
     info: dict[str, Any] = field(default_factory=dict)
+    takeoff: int = 0
+    landing: int = 0
 
     def __post_init__(self) -> None:
         control = checks.numbers("control", self.control).copy()
@@ -136,6 +137,12 @@ class Curve:
 
     def __repr__(self) -> str:
         return f"<Curve by {self.planner}: {self.length:.1f} m, {len(self.control)} control points>"
+
+    @property
+    def en_route(self) -> "Curve":
+        """The curve between take-off and landing: what is promised of heights, clearance and turns holds there."""
+        control = self.control[self.takeoff : len(self.control) - self.landing]
+        return replace(self, control=control, takeoff=0, landing=0) if self.takeoff or self.landing else self
 
     @cached_property
     def parameter(self) -> np.ndarray:
@@ -235,38 +242,42 @@ class Curve:
         return np.arctan2(self.tangent[:, 2], np.hypot(self.tangent[:, 0], self.tangent[:, 1]))
 
     @cached_property
-    def sagitta(self) -> np.ndarray:
-        """How far the curve can be from the straight lines between its points, (P − 1,) [m]: max|r″|·Δt²/8."""
-        second = np.linalg.norm(self.acceleration, axis=1)
-        return np.maximum(second[:-1], second[1:]) * np.diff(self.parameter) ** 2 / 8  # r″ is linear in between
+    def rise(self) -> np.ndarray:
+        """How far above or below the straight lines between its points the curve can be, (P − 1,) [m]."""
+        second = np.abs(self.acceleration[:, 2])
+        return np.maximum(second[:-1], second[1:]) * np.diff(self.parameter) ** 2 / 8
 
-    def least_distances(self, city: City, exact_within: float | None = None) -> np.ndarray:
+    @cached_property
+    def sagitta(self) -> np.ndarray:
+        """How far the curve can be from the straight lines between its points, (P − 1,) [m]: max|r″|·Δt²/8.
+
+        Where it runs along a line without turning back only the part of r″ across the line counts.
+        """
+        line = np.diff(self.points, axis=0)
+        along = line / np.maximum(np.linalg.norm(line, axis=1), AT_REST)[:, None]
+        ends = [slice(None, -1), slice(1, None)]  # r″ is linear in between
+        ahead = [(self.velocity[end] * along).sum(axis=1) for end in ends]
+        faster = [(self.acceleration[end] * along).sum(axis=1) for end in ends]
+        onward = (np.minimum(*ahead) >= -AT_REST) & ((faster[0] >= 0) | (faster[1] <= 0))
+        size = [
+            np.linalg.norm(self.acceleration[end] - np.where(onward, part, 0.0)[:, None] * along, axis=1)
+            for end, part in zip(ends, faster, strict=True)
+        ]
+        return np.maximum(*size) * np.diff(self.parameter) ** 2 / 8
+
+    def least_distances(self, city: City, at_most: float = np.inf) -> np.ndarray:
         """A lower bound of the distance to the obstacles between each two of its points, (P − 1,) [m].
 
-        See `City.distance` for `exact_within`.
+        That of the straight line, less the sagitta; where the line is farther away than `at_most`, as if it were that.
         """
         checks.instance("city", city, City)
-        return between(self.points, self.sagitta, city, exact_within)
+        straight = city.segment_distance(self.points[:-1], self.points[1:], at_most=at_most)
+        return np.maximum(straight - self.sagitta, 0.0)
 
     def clearance(self, city: City) -> float:
-        """A lower bound of its least distance d to the obstacles [m].
-
-        Too low by about (1/d + κ)·step²/8; where d is more than four voxels, by up to two voxels more.
-        """
+        """A lower bound of its least distance to the obstacles [m], too low by the sagitta, about κ·step²/8."""
         return float(self.least_distances(city).min())
 
     def route(self, step: float | None = None) -> Route:
         """The curve as straight lines of at most `step` metres, by default its own; longer ones draw faster."""
         return Route((self if step is None else replace(self, step=step)).points, self.planner)
-
-
-def between(points: np.ndarray, sagitta: np.ndarray, city: City, exact_within: float | None = None) -> np.ndarray:
-    """A lower bound of the distance to the obstacles between points (P, 3) of a curve, (P − 1,) [m].
-
-    On a straight line of length a, an end of it is at most a/2 from the foot of the perpendicular from an obstacle,
-    hence √(d² − a²/4); the curve leaves the line by its sagitta.
-    """
-    distance = city.distance(points, exact_within)
-    nearer = np.minimum(distance[:-1], distance[1:])
-    apart = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    return np.maximum(np.sqrt(np.maximum(nearer**2 - apart**2 / 4, 0.0)) - sagitta, 0.0)

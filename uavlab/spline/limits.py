@@ -5,7 +5,7 @@ says nothing without a speed: on a circle of 5 m a UAV at 16 m/s needs five time
 that holds weight, wind and the turn together, and how far the UAV must tilt for it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -113,7 +113,7 @@ def feasibility(
     min_clearance: float | None = None,
     as_printed: bool = False,
 ) -> Feasibility:
-    """Check a curve against what a UAV can do, at a constant speed over ground.
+    """Check a curve against what a UAV can do, at a constant speed over ground; but for take-off and landing.
 
     Parameters
     ----------
@@ -148,6 +148,8 @@ def feasibility(
     checks.instance("curve", curve, Curve)
     checks.instance("uav", uav, UAV)
     checks.instance("city", city, City)
+    whole, curve = curve, curve.en_route
+    begins = float(whole.distance[np.searchsorted(whole.parameter, whole.takeoff)])
     speed = uav.cruise_speed if speed is None else speed
     checks.positive_number("speed", speed)
     pitch = np.degrees(np.abs(curve.pitch))
@@ -156,7 +158,7 @@ def feasibility(
     steepest = upper(curve, "pitch", "°", np.degrees(max_pitch), pitch)
     if as_printed:
         per_voxel = upper(curve, "curvature", "per voxel", 1.0, curve.curvature * city.cell)
-        return Feasibility((per_voxel, steepest), speed)
+        return feasibility_after(begins, (per_voxel, steepest), speed)
     sharpest = GRAVITY * np.tan(checked_bank(bank)) / speed**2
     thrust, tilt = tilted_thrust(curve, uav, speed, wind)
     air_speed = np.linalg.norm(speed * curve.tangent - checks.three("wind", wind), axis=1)
@@ -165,7 +167,8 @@ def feasibility(
     distances = curve.least_distances(city, body + city.cell)
     least = float(distances.min())
     nearest = int(np.flatnonzero(distances <= (1 + 1e-9) * least)[0])
-    return Feasibility(
+    return feasibility_after(
+        begins,
         (
             Limit("clearance", "m", body, least, True, *whereabouts(curve, nearest)),
             upper(curve, "curvature", "1/m", sharpest, curve.level_curvature),
@@ -176,6 +179,11 @@ def feasibility(
         ),
         float(speed),
     )
+
+
+def feasibility_after(begins: float, limits: tuple[Limit, ...], speed: float) -> Feasibility:
+    """The limits of a part of a curve, which begins after so many metres of take-off."""
+    return Feasibility(tuple(replace(limit, distance=begins + limit.distance) for limit in limits), speed)
 
 
 def upper(curve: Curve, name: str, unit: str, limit: float, values: np.ndarray) -> Limit:
@@ -222,11 +230,11 @@ def tilted_thrust(
 def greatest_speed(curve: Curve, uav: UAV, wind: npt.ArrayLike = (0.0, 0.0, 0.0), *, bank: float = BANK) -> float:
     """The greatest constant speed over ground [m/s] at which bank, thrust, tilt and air speed stay within limits.
 
-    0 when there is none, as at a corner; to a millimetre per second.
+    Between take-off and landing; 0 when there is none, as at a corner; to a millimetre per second.
     """
     checks.instance("curve", curve, Curve)
     checks.instance("uav", uav, UAV)
-    wind = checks.three("wind", wind)
+    curve, wind = curve.en_route, checks.three("wind", wind)
     checked_bank(bank)
 
     def flyable(speed: float) -> bool:

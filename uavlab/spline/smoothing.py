@@ -1,11 +1,14 @@
 """From a route to a curve that touches nothing: a B-spline over its waypoints, repaired where it cuts a corner."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.bounds import Bounds, bounds_of, legs_keep
 from uavlab.route import Route
-from uavlab.spline.curve import CONTACT, Curve, between
+from uavlab.spline.curve import CONTACT, Curve
 from uavlab.vehicle import UAV
 
 MIDPOINT_ROUNDS = 6
@@ -21,62 +24,73 @@ def smooth(
     min_height: float = 0.0,
     max_height: float = np.inf,
 ) -> Curve:
-    """A cubic B-spline with the waypoints as control points, repaired until it is as clear as the route.
+    """A cubic B-spline with the waypoints as control points, repaired until it keeps what the route keeps.
 
-    It cuts corners. Where the body would then touch an obstacle, or the curve enters a voxel that the planner had
-    closed, midpoints are inserted into the legs around, which pull it to them; after six rounds the waypoints around
-    are doubled and tripled, which leaves straight lines with corners. Both make turns tighter: see `feasibility`.
+    It cuts corners. Where the body would then touch an obstacle, or the curve come too near to one, into a no-fly zone,
+    too low or too high, midpoints are inserted into the legs around, which pull it to them; after six rounds the
+    waypoints around are doubled and tripled, which leaves straight lines with corners. Both make turns tighter: see
+    `feasibility`. A route that turns around an obstacle no farther away than `min_clearance` leaves no other way: plan
+    it with a little more.
 
     Parameters
     ----------
     route : Route
-        At least two waypoints, none of them the same as the one before.
+        At least two waypoints, none of them the same as the one before. Between its vertical take-off or landing and
+        the rest the curve has a corner, to hover at: the waypoint stands three times.
     city : City
     uav : UAV
         Its body is a ball of its diameter.
     min_clearance : float
-        Least clearance of the voxels that the curve passes through [m], as the planner was asked for it.
+        Least distance to obstacles [m], all along but for take-off and landing, which need room only for the body.
     min_height, max_height : float
-        Least and greatest height above ground [m], as the planner was asked for them.
+        Least and greatest height above ground [m] between take-off and landing, all along.
 
     Returns
     -------
     Curve
-        `info["rounds"]` of repair, points `info["inserted"]` and `info["repeated"]`.
+        `info["rounds"]` of repair, points `info["inserted"]` and `info["repeated"]` by it.
 
     Raises
     ------
     ValueError
-        If the route didn't arrive, repeats a waypoint, or isn't clear itself; the message says where.
+        If the route didn't arrive, repeats a waypoint, or doesn't keep what is asked for; the message says where.
     """
     checks.instance("route", route, Route)
     checks.instance("city", city, City)
     checks.instance("uav", uav, UAV)
-    blocked = city.blocked(min_clearance, min_height=min_height, max_height=max_height)
-    refuse_route(route, city, uav, blocked)
-    control = route.points
+    bounds = bounds_of(city, min_clearance, min_height, max_height)
+    refuse_route(route, city, uav, bounds)
+    bounds = bounds._replace(keep=max(bounds.keep, (1 - CONTACT) * uav.diameter / 2 / city.cell))
+    before, after = route.points[: route.takeoff], route.points[len(route.points) - route.landing :]
+    way = route.en_route.points
+    control = np.concatenate([way[:1]] * 2 * bool(route.takeoff) + [way] + [way[-1:]] * 2 * bool(route.landing))
     inserted = repeated = rounds = 0
     while True:
         info = {"rounds": rounds, "inserted": inserted, "repeated": repeated}
         curve = Curve(control, step=uav.diameter / 8, planner=f"{route.planner} + B-spline", info=info)
-        wrong = touching_segments(curve, city, uav, blocked)
+        wrong = wrong_segments(curve, city, bounds)
         if not wrong.any():
-            return curve
-        before = len(control)
+            return replace(
+                curve,
+                control=np.concatenate([before, control, after]),
+                takeoff=len(before) + 1 if len(before) else 0,
+                landing=len(after) + 1 if len(after) else 0,
+            )
+        count = len(control)
         if rounds < MIDPOINT_ROUNDS:
             control = with_midpoints(control, wrong)
-            inserted += len(control) - before
+            inserted += len(control) - count
         else:
             control = with_repeated(control, wrong)
-            repeated += len(control) - before
-        if len(control) == before:
+            repeated += len(control) - count
+        if len(control) == count:
             where = checks.show(curve.at(np.flatnonzero(wrong)[0] + 0.5))
             raise ValueError(f"route passes an obstacle so closely at {where} that not even straight lines are clear")
         rounds += 1
 
 
-def refuse_route(route: Route, city: City, uav: UAV, blocked: np.ndarray) -> None:
-    """`ValueError` if a route can't be smoothed, or isn't clear before."""
+def refuse_route(route: Route, city: City, uav: UAV, bounds: Bounds) -> None:
+    """`ValueError` if a route can't be smoothed, or doesn't keep the bounds before."""
     if not route.reached:
         raise ValueError(f"route doesn't arrive ({route.reason}): plan one that does")
     points = route.points
@@ -85,52 +99,44 @@ def refuse_route(route: Route, city: City, uav: UAV, blocked: np.ndarray) -> Non
     same = np.flatnonzero((np.diff(points, axis=0) == 0).all(axis=1))
     if len(same):
         raise ValueError(f"route repeats waypoint {same[0]} at {checks.show(points[same[0]])}: drop one of the two")
-    for leg in range(len(points) - 1):
-        if enters(points[leg : leg + 2], city, blocked):
-            ends = f"waypoints {leg} {checks.show(points[leg])} and {leg + 1} {checks.show(points[leg + 1])}"
-            raise ValueError(
-                f"route passes through a closed voxel or leaves the map between {ends}, before it is smoothed: "
-                "give the min_clearance that it was planned with"
-            )
+    legs = np.arange(len(points) - 1)
+    vertical = (legs < route.takeoff) | (legs >= len(legs) - route.landing)
+    cells, nothing = (points - city.origin) / city.cell, np.zeros(len(legs))
+    kept = legs_keep(bounds, cells, nothing, nothing)
+    kept |= vertical & legs_keep(bounds_of(city), cells, nothing, nothing)
+    if not kept.all():
+        leg = int(np.argmin(kept))
+        ends = f"waypoints {leg} {checks.show(points[leg])} and {leg + 1} {checks.show(points[leg + 1])}"
+        raise ValueError(
+            f"route comes too near to an obstacle or a zone, too low or too high, or leaves the map between {ends}, "
+            "before it is smoothed: give the min_clearance and heights that it was planned with"
+        )
     radius = uav.diameter / 2
-    fine = route.resample(radius / 4)
-    distance = between(fine.points, np.zeros(len(fine.points) - 1), city, radius)
+    distance = city.segment_distance(points[:-1], points[1:], at_most=radius)
     worst = int(np.argmin(distance))
     if distance[worst] < (1 - CONTACT / 2) * radius:
-        where = checks.show(fine.points[worst])
+        fine = Route(points[worst : worst + 2]).resample(radius / 4).points
+        where = checks.show(fine[np.argmin(city.distance(fine, radius))])
         raise ValueError(
             f"route comes within {distance[worst]:.2f} m of an obstacle at {where}, before it is smoothed; "
             f"a body of {uav.diameter:g} m needs {radius:g} m: plan with a larger min_clearance"
         )
 
 
-def touching_segments(curve: Curve, city: City, uav: UAV, blocked: np.ndarray) -> np.ndarray:
-    """Which segments of a curve touch an obstacle or enter a blocked voxel, (S,) bool."""
-    radius = uav.diameter / 2
-    touches = curve.least_distances(city, radius) < (1 - CONTACT) * radius
+def wrong_segments(curve: Curve, city: City, bounds: Bounds) -> np.ndarray:
+    """Which segments of a curve don't keep the bounds, (S,) bool."""
+    points = (curve.points - city.origin) / city.cell
+    kept = legs_keep(bounds, points, curve.sagitta / city.cell, curve.rise / city.cell)
     segment = np.minimum(curve.parameter.astype(int), int(curve.parameter[-1]) - 1)
     wrong = np.zeros(segment[-1] + 1, dtype=bool)
-    wrong[segment[:-1][touches]] = True
-    for number in np.flatnonzero(~wrong):
-        within = np.flatnonzero(segment == number)
-        wrong[number] = enters(curve.points[within[0] : within[-1] + 2], city, blocked)
+    wrong[segment[:-1][~kept]] = True
     return wrong
-
-
-def enters(points: np.ndarray, city: City, blocked: np.ndarray) -> bool:
-    """Whether a polyline passes through a blocked voxel or leaves the map; by exact traversal."""
-    voxels = city.cell_of(points)
-    stays = (voxels[:-1] == voxels[1:]).all(axis=1)
-    crossed = [city.voxels_along(points[leg : leg + 2])[0] for leg in np.flatnonzero(~stays)]
-    index = np.concatenate([voxels[:-1][stays], *crossed])
-    outside = ((index < 0) | (index >= city.shape)).any()
-    return bool(outside or blocked[tuple(index.T)].any())
 
 
 def with_midpoints(control: np.ndarray, wrong: np.ndarray) -> np.ndarray:
     """Control points with one more in the middle of each leg that a wrong segment depends on."""
     around = np.pad(wrong, 1)
-    legs = around[:-2] | around[1:-1] | around[2:]
+    legs = (around[:-2] | around[1:-1] | around[2:]) & (np.diff(control, axis=0) != 0).any(axis=1)
     middle = (control[:-1] + control[1:])[legs] / 2
     return np.insert(control, np.flatnonzero(legs) + 1, middle, axis=0)
 
