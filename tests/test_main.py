@@ -4,10 +4,13 @@ import json
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from uavlab.__main__ import main
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*city.source tells all:UserWarning")
 
 
 def test_writes_one_page_and_says_where(tmp_path, capsys):
@@ -164,3 +167,112 @@ def test_help_names_every_option():
     named = "--city --cell --planner --detour --start --goal --wind --wind-from --rain --payload --clearance --flights"
     for option in [*named.split(), "--seed", "--out"]:
         assert option in text
+
+
+def square(west, south, side):
+    return [[west, south], [west + side, south], [west + side, south + side], [west, south + side]]
+
+
+def feature(ring, **properties):
+    return {"type": "Feature", "properties": properties, "geometry": {"type": "Polygon", "coordinates": [ring]}}
+
+
+@pytest.fixture
+def town(tmp_path):
+    """A file with two houses, one of them of unknown height, in metres near (0, 0)."""
+
+    def write(*features, name="town.geojson"):
+        path = tmp_path / name
+        houses = [feature(square(0, 0, 20), roof=20, levels=6), feature(square(80, 60, 20), levels=2)]
+        path.write_text(json.dumps({"type": "FeatureCollection", "features": list(features) or houses}))
+        return str(path)
+
+    return write
+
+
+def page_of(tmp_path, *arguments, status=0):
+    out = tmp_path / "route.html"
+    out.unlink(missing_ok=True)
+    assert main([*arguments, "--flights", "0", "--out", str(out)]) == status
+    return out.read_text(encoding="utf-8") if out.exists() else ""
+
+
+def rows_of(page):
+    return dict(re.findall(r"<th>([^<]+)</th><td>([^<]+)</td>", page))
+
+
+def test_heights_of_a_file_are_found_where_one_says(tmp_path, town, capsys):
+    file = town()
+    assert main(["--city", file, "--crs", "local"]) == 2
+    assert "Pass default_height=10.0" in capsys.readouterr().err
+    roofs = {}
+    for name, options in {
+        "property": ["--height", "roof", "--default-height", "40"],
+        "storeys": ["--height", "levels"],
+        "higher storeys": ["--height", "levels", "--storey-height", "5"],
+        "one": ["--height", "12.5"],
+    }.items():
+        page = page_of(tmp_path, "--city", file, "--crs", "local", "--cell", "4", *options)
+        roofs[name] = rows_of(page)["city"].split(" voxels")[0]
+        assert "What was read" in page
+    assert len(set(roofs.values())) == 4  # how high the map is follows the highest roof
+    assert "assumed: 1 × height of 40 m (default_height)" in capsys.readouterr().out
+
+
+def test_the_reference_system_and_degrees_are_taken(tmp_path, town, capsys):
+    ring = [[4.36, 52.01], [4.3603, 52.01], [4.3603, 52.0102], [4.36, 52.0102]]
+    file = town(feature(ring, height="30 ft"))
+    ends = ["--start-lonlat", "4.3599,52.0101,14", "--goal-lonlat", "4.3604,52.0101,15"]
+    page = page_of(tmp_path, "--city", file, "--cell", "1", *ends)
+    assert "(longitude, latitude 4.359900°, 52.010100° to 4.360400°, 52.010100°)" in rows_of(page)["start, goal"]
+    assert re.search(r", 14\.0\) m to \(.*, 15\.0\) m", rows_of(page)["start, goal"])
+    assert main(["--city", file, "--crs", "EPSG:0"]) == 2
+    assert "is no reference system that pyproj knows" in capsys.readouterr().err
+    assert main(["--city", file, "--start-lonlat", "52.01,104.36,14"]) == 2
+    assert "latitudes must be from -90 to 90 degrees (order: longitude" in capsys.readouterr().err
+
+
+def test_negative_coordinates_are_no_options(tmp_path, town):
+    ends = ["--start", "-10,10,25", "--goal", "60,-12,25"]
+    page = page_of(tmp_path, "--city", town(), "--crs", "local", "--height", "levels", *ends)
+    assert rows_of(page)["start, goal"] == "(-10.0, 10.0, 25.0) m to (60.0, -12.0, 25.0) m"
+
+
+def test_ground_heights_and_zones_are_kept(tmp_path, town, capsys):
+    grid = tmp_path / "hill.asc"
+    header = "ncols 40\nnrows 40\nxllcorner -60\nyllcorner -60\ncellsize 6\n"
+    grid.write_text(header + "\n".join(" ".join(str(2 * column) for column in range(40)) for _ in range(40)))
+    zone = town(feature(square(40, -40, 20), upper="90 m", name="school"), name="zone.geojson")
+    where = ["--city", town(), "--crs", "local", "--height", "levels", "--cell", "4", "--terrain", str(grid)]
+    page = page_of(tmp_path, *where, "--max-height", "60", "--no-fly", zone)
+    assert "ground from the terrain given" in page
+    assert "school" in page
+    assert page_of(tmp_path, *where, "--max-height", "2", status=2) == ""
+    assert "within the limits of height" in capsys.readouterr().err
+    inside = ["--start", "50,-30,60", "--goal", "-10,10,60"]
+    assert page_of(tmp_path, *where, *inside, "--no-fly", zone, status=2) == ""
+    assert "start (50.0, -30.0, 60.0) lies in no-fly zone 'school'" in capsys.readouterr().err
+
+
+FOR_FILES = ["--height=9", "--default-height=9", "--storey-height=3", "--crs=local", "--terrain=0"]
+
+
+@pytest.mark.parametrize("option", FOR_FILES)
+def test_options_for_files_are_refused_for_known_cities(option, capsys):
+    assert main([option]) == 2
+    assert "is for cities from a file, not for table1" in capsys.readouterr().err
+
+
+def test_an_option_that_a_format_doesnt_know_is_refused(tmp_path, capsys):
+    voxels = tmp_path / "wall.3dmap"
+    voxels.write_text("voxel 10 10 10\n5 5 5\n")
+    assert main(["--city", str(voxels), "--crs", "local"]) == 2
+    assert "crs is no option for a voxel map, which takes cell" in capsys.readouterr().err
+
+
+def test_the_city_s_own_file_is_never_overwritten(town, capsys):
+    file = town()
+    before = Path(file).read_text()
+    assert main(["--city", file, "--crs", "local", "--height", "levels", "--out", file]) == 2
+    assert "is the city's own file: choose another" in capsys.readouterr().err
+    assert Path(file).read_text() == before

@@ -6,26 +6,23 @@ REPARE Table 1 and its case of a light load in mild wind; `--city campus` plans 
 """
 
 import argparse
-import base64
-import html
-import io
+import os
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from uavlab import __version__
+from uavlab.report import Conditions, Trial, report
 
 if TYPE_CHECKING:  # imported late, so that --help answers at once
     from uavlab.city import City
-    from uavlab.flight import Flight, Flights, Wind
     from uavlab.risk import RiskMap
     from uavlab.route import Route
-    from uavlab.spline import Curve, Feasibility
-    from uavlab.vehicle import UAV
 
 TABLE1_FLIGHT = ((90.0, 18.0, 30.0), (20.0, 75.0, 75.0))
 """From inside the notch of building 1 to above the floating building [m]."""
@@ -39,12 +36,24 @@ PLANNERS = {
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; 0 when the route arrives, 1 when there is none, 2 for a wrong question."""
-    options = parser().parse_args(arguments)
+    options = parser().parse_args(joined(sys.argv[1:] if arguments is None else arguments))
     try:
         return run(options)
     except (ValueError, OSError) as error:
         print(f"uavlab: {error}", file=sys.stderr)
         return 2
+
+
+POSITIONS = ("--start", "--goal", "--start-lonlat", "--goal-lonlat")
+
+
+def joined(arguments: Sequence[str]) -> list[str]:
+    """The arguments with positions as --start=-10,10,25: argparse takes a negative number alone for an option."""
+    words = list(arguments)
+    for number in range(len(words) - 1, 0, -1):
+        if words[number - 1] in POSITIONS and words[number].startswith("-"):
+            words[number - 1 : number + 1] = [f"{words[number - 1]}={words[number]}"]
+    return words
 
 
 def parser() -> argparse.ArgumentParser:
@@ -75,8 +84,21 @@ def parser() -> argparse.ArgumentParser:
         metavar="PERCENT",
         help="how much longer than the shortest route a route of least risk may be; default %(default)s",
     )
-    command.add_argument("--start", type=position, metavar="X,Y,Z", help="metres; default: near the south-west corner")
-    command.add_argument("--goal", type=position, metavar="X,Y,Z", help="metres; default: near the north-east corner")
+    for name, corner in (("start", "south-west"), ("goal", "north-east")):
+        one = command.add_mutually_exclusive_group()
+        one.add_argument(f"--{name}", type=position, metavar="X,Y,Z", help=f"metres; default: near the {corner} corner")
+        one.add_argument(
+            f"--{name}-lonlat", type=position, metavar="LON,LAT,HEIGHT", help="degrees, and metres above ground"
+        )
+    files = command.add_argument_group("reading a file")
+    files.add_argument("--height", type=number_or_name, metavar="PROPERTY|M", help="GeoJSON: where the height stands")
+    files.add_argument("--default-height", type=float, metavar="M", help="GeoJSON: of buildings without a height")
+    files.add_argument("--storey-height", type=float, metavar="M", help="GeoJSON: of a storey; default 3")
+    files.add_argument("--crs", metavar="CODE", help="reference system, such as EPSG:2263, or local for plain metres")
+    files.add_argument("--terrain", type=number_or_name, metavar="FILE|M", help="the ground: an .asc grid or a GeoTIFF")
+    files.add_argument("--no-fly", type=Path, metavar="FILE", help="GeoJSON with zones, limits in lower and upper")
+    command.add_argument("--min-height", type=float, metavar="M", help="least height above ground; default 0")
+    command.add_argument("--max-height", type=float, metavar="M", help="greatest height above ground; default none")
     command.add_argument(
         "--wind", type=float, default=6.0, metavar="M/S", help="mean wind; default %(default)s, a mild disturbance"
     )
@@ -120,29 +142,36 @@ def position(text: str) -> tuple[float, ...]:
     return coordinates
 
 
+def number_or_name(text: str) -> float | str:
+    """A number where it is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def run(options: argparse.Namespace) -> int:
     """Plan, smooth, fly, draw, write; print where the page is."""
     began = time.perf_counter()
     if options.flights < 0:
         raise ValueError(f"--flights must be at least 0, got {options.flights}")
-    city, risk_map = load_city(options.city, options.cell)
+    if Path(options.city).is_file() and options.out.exists() and options.out.samefile(options.city):
+        raise ValueError(f"--out {options.out} is the city's own file: choose another")
+    city, risk_map = load_city(options)
+    if city.source is not None:
+        print(city.source)
     conditions = conditions_of(options, risk_map)
     if conditions.grounded:
         print(f"grounded: {conditions.grounded}")
         return 1
-    start, goal = (
-        point if point is not None else default
-        for point, default in zip(
-            (options.start, options.goal), default_flight(city, conditions.clearance), strict=True
-        )
-    )
-    routes, risk_map = plan(options, city, risk_map, start, goal, conditions.clearance)
-    trial = try_out(routes[0], city, conditions, options.flights, options.seed)
+    heights = heights_of(options, risk_map)
+    asked = (position_of(options, city, name) for name in ("start", "goal"))
+    usual = default_flight(city, conditions.clearance, heights)
+    start, goal = (default if point is None else point for point, default in zip(asked, usual, strict=True))
+    routes, risk_map = plan(options, city, risk_map, start, goal, conditions.clearance, heights)
+    trial = try_out(routes[0], city, conditions, heights, options.flights, options.seed)
     page = report(city, routes, start, goal, conditions, trial, risk_map)
-    try:
-        options.out.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise OSError(f"can't write {options.out}: {error.strerror}; choose another file with --out") from error
+    write(options.out, page)
     print(f"{routes[0].planner}: {routes[0].length:.1f} m" if routes[0].reached else f"not reached: {routes[0].reason}")
     for line in trial.lines():
         print(line)
@@ -150,15 +179,34 @@ def run(options: argparse.Namespace) -> int:
     return 1 if trial.problem else 0
 
 
-class Conditions(NamedTuple):
-    """Who flies in what, and how far it has to keep from walls."""
+def write(path: Path, page: str) -> None:
+    """Write a page beside its place first, so that an old one isn't lost if that fails."""
+    beside = path.with_name(f"{path.name}.{os.getpid()}.part")
+    try:
+        beside.write_text(page, encoding="utf-8")
+        beside.replace(path)
+    except OSError as error:
+        beside.unlink(missing_ok=True)
+        raise OSError(f"can't write {path}: {error.strerror}; choose another file with --out") from error
 
-    uav: "UAV"
-    wind: "Wind"
-    gust: float
-    sigma: float
-    clearance: float
-    grounded: str
+
+def heights_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> dict[str, Any]:
+    """Limits of height above ground, for planners."""
+    usual = 0.0 if risk_map is None else risk_map.min_height
+    return {
+        "min_height": usual if options.min_height is None else options.min_height,
+        "max_height": np.inf if options.max_height is None else options.max_height,
+    }
+
+
+def position_of(options: argparse.Namespace, city: "City", name: str) -> np.ndarray | None:
+    """A start or a goal that was asked for [m]."""
+    lonlat = getattr(options, f"{name}_lonlat")
+    if lonlat is None:
+        return getattr(options, name)
+    point = city.from_geographic([*lonlat[:2], 0.0])
+    point[2] = lonlat[2] + (point[2] - city.height_above_ground(point))
+    return point
 
 
 def conditions_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> Conditions:
@@ -190,6 +238,7 @@ def plan(
     start: np.ndarray,
     goal: np.ndarray,
     clearance: float,
+    heights: dict[str, Any],
 ) -> tuple[list["Route"], "RiskMap | None"]:
     """The route asked for, others to compare it with, and the risk map if there is one."""
     from uavlab.planners import astar, shortcut
@@ -197,40 +246,16 @@ def plan(
     planner = options.planner or ("any-angle" if risk_map is None else "least-risk")
     if planner == "least-risk":
         risk_map = risk_map or assumed_risk(city)
-        return by_risk(risk_map, start, goal, clearance, options.detour), risk_map
-    route = astar(city, start, goal, min_clearance=clearance)
-    return [shortcut(route, city, min_clearance=clearance) if planner == "any-angle" else route], risk_map
+        return by_risk(risk_map, start, goal, {"min_clearance": clearance, **heights}, options.detour), risk_map
+    route = astar(city, start, goal, min_clearance=clearance, **heights)
+    if planner == "any-angle":
+        route = shortcut(route, city, min_clearance=clearance, **heights)
+    return [route], risk_map
 
 
-class Trial(NamedTuple):
-    """A route as a curve, and flown."""
-
-    problem: str = ""
-    """Why it can't be flown; empty if it can."""
-    curve: "Curve | None" = None
-    limits: "Feasibility | None" = None
-    flight: "Flight | None" = None
-    flights: "Flights | None" = None
-    as_planned: "Flights | None" = None
-    """With offsets as large as the distance was chosen for."""
-
-    def lines(self) -> list[str]:
-        """What to say in a terminal."""
-        if self.problem:
-            return [f"not flown: {self.problem}"]
-        said = []
-        if self.curve is not None and self.limits is not None:
-            kept = "all limits kept" if self.limits.feasible else "limits exceeded: " + ", ".join(self.exceeded())
-            said.append(f"smoothed: {self.curve.length:.1f} m, at {self.limits.speed:g} m/s {kept}")
-        if self.flights is not None:
-            said.append(f"flown {len(self.flights.outcome)} times in gusts, crashed {self.flights.crashed.sum()} times")
-        return said
-
-    def exceeded(self) -> list[str]:
-        return [] if self.limits is None else [limit.name for limit in self.limits.limits if not limit.met]
-
-
-def try_out(route: "Route", city: "City", conditions: Conditions, flights: int, seed: int) -> Trial:
+def try_out(
+    route: "Route", city: "City", conditions: Conditions, heights: dict[str, Any], flights: int, seed: int
+) -> Trial:
     """Smooth a route, check the curve, and fly it."""
     from uavlab.flight import OffsetProcess, fly, monte_carlo
     from uavlab.spline import feasibility, smooth
@@ -239,7 +264,7 @@ def try_out(route: "Route", city: "City", conditions: Conditions, flights: int, 
         return Trial("there is no route")
     uav, wind = conditions.uav, conditions.wind
     try:
-        curve = smooth(route, city, uav, min_clearance=conditions.clearance)
+        curve = smooth(route, city, uav, min_clearance=conditions.clearance, **heights)
     except ValueError as error:
         return Trial(str(error))
     trial = Trial("", curve, feasibility(curve, uav, city, wind=wind.mean))
@@ -255,19 +280,31 @@ def try_out(route: "Route", city: "City", conditions: Conditions, flights: int, 
     )
 
 
-def load_city(name: str, cell: float | None) -> tuple["City", "RiskMap | None"]:
+def load_city(options: argparse.Namespace) -> tuple["City", "RiskMap | None"]:
     """A city by name, or from a file, and its risk map where it has one."""
-    from uavlab.city import read_city, table1_city
+    from uavlab.city import read_city, read_no_fly, table1_city
     from uavlab.risk import reference_campus
 
+    name, cell = options.city, options.cell
+    asked = {key: getattr(options, key) for key in ("height", "default_height", "storey_height", "crs", "terrain")}
+    reading: dict[str, Any] = {key: value for key, value in asked.items() if value is not None}
+    if reading and name in ("table1", "campus"):
+        option = next(iter(reading)).replace("_", "-")
+        raise ValueError(f"--{option} is for cities from a file, not for {name}")
+    risk_map = None
     if name == "table1":
-        return table1_city(cell=1.0 if cell is None else cell), None
-    if name == "campus":
+        city = table1_city(cell=1.0 if cell is None else cell)
+    elif name == "campus":
         risk_map = reference_campus(cell=5.0 if cell is None else cell)
-        return risk_map.city, risk_map
-    if not Path(name).is_file():
+        city = risk_map.city
+    elif Path(name).is_file():
+        city = read_city(name, cell=2.0 if cell is None else cell, **reading)
+    else:
         raise ValueError(f"--city {name}: neither a known name (table1, campus) nor a file")
-    return read_city(name, cell=2.0 if cell is None else cell), None
+    if options.no_fly is not None:
+        city = replace(city, no_fly=read_no_fly(options.no_fly, city))
+        risk_map = None if risk_map is None else replace(risk_map, city=city)
+    return city, risk_map
 
 
 def assumed_risk(city: "City") -> "RiskMap":
@@ -278,182 +315,41 @@ def assumed_risk(city: "City") -> "RiskMap":
 
 
 def by_risk(
-    risk_map: "RiskMap", start: np.ndarray, goal: np.ndarray, clearance: float, detour_percent: float
+    risk_map: "RiskMap", start: np.ndarray, goal: np.ndarray, limits: dict[str, Any], detour_percent: float
 ) -> list["Route"]:
     """The route of least risk within a detour, and beside it the safest of the shortest."""
     from uavlab.planners import least_risk
 
     if not 0 <= detour_percent < np.inf:
         raise ValueError(f"--detour must be a percentage, finite and at least 0, got {detour_percent:g}")
-    blind = least_risk(risk_map, start, goal, length=1.0, min_clearance=clearance)  # a metre outweighs all risk
+    blind = least_risk(risk_map, start, goal, length=1.0, **limits)  # a metre outweighs all risk
     blind = replace(blind, planner="shortest")
     if not blind.reached:
         return [blind]
-    longest = blind.length * (1 + detour_percent / 100)
-    return [least_risk(risk_map, start, goal, max_length=longest, min_clearance=clearance), blind]
+    longest = blind.en_route.length * (1 + detour_percent / 100)
+    return [least_risk(risk_map, start, goal, max_length=longest, **limits), blind]
 
 
-def default_flight(city: "City", clearance: float) -> tuple[np.ndarray, np.ndarray]:
+def default_flight(city: "City", clearance: float, heights: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     """A flight across the map: a known one, else from the south-west to the north-east, amid the buildings."""
     from uavlab.risk import CAMPUS_FLIGHT
 
     known = {"Table 1": TABLE1_FLIGHT, "reference campus": CAMPUS_FLIGHT}
     if city.name in known:
         return np.array(known[city.name][0]), np.array(known[city.name][1])
-    free = np.argwhere(~city.blocked(clearance))
+    free = np.argwhere(~city.blocked(clearance, **heights))
     if len(free) == 0:
-        raise ValueError(f"--clearance {clearance:g}: no voxel of the map is that far from all obstacles; ask for less")
-    built = np.flatnonzero(city.occupied.any(axis=(0, 1)))
-    height = 0.4 * (built[-1] + 1 if len(built) else city.shape[2])
-    size = np.array(city.shape)
-    wanted = np.array([0.1, 0.1, 0.0]) * size + [0, 0, height], np.array([0.9, 0.9, 0.0]) * size + [0, 0, height]
-    nearest = [free[np.argmin(((free + 0.5 - point) ** 2).sum(axis=1))] for point in wanted]
+        raise ValueError(
+            f"--clearance {clearance:g}: no voxel of the map is that far from all obstacles, within the limits of "
+            "height; ask for less"
+        )
+    above = city.height_above_ground(city.center_of(np.argwhere(city.occupied)))
+    height = 0.4 * (float(above.max(initial=0.0)) or float(np.ptp(city.bounds[:, 2])))
+    points = city.bounds[0] + np.array([[0.1, 0.1, 0.0], [0.9, 0.9, 0.0]]) * np.ptp(city.bounds, axis=0)
+    points[:, 2] += height - city.height_above_ground(points)
+    nearest = [free[np.argmin(((city.center_of(free) - point) ** 2).sum(axis=1))] for point in points]
     return city.center_of(nearest[0]), city.center_of(nearest[1])
 
-
-def report(
-    city: "City",
-    routes: list["Route"],
-    start: np.ndarray,
-    goal: np.ndarray,
-    conditions: Conditions,
-    trial: Trial,
-    risk_map: "RiskMap | None",
-) -> str:
-    """The page as HTML: the curve is the answer, or the first route where there is none; others are to compare."""
-    from matplotlib import rc_context
-
-    from uavlab import plot, scene
-
-    drawn = routes if trial.curve is None else [trial.curve.route(city.cell), *routes[1:]]
-    clearance = conditions.clearance
-    picture = io.BytesIO()
-    with rc_context({"svg.hashsalt": "uavlab"}):  # same question, same bytes
-        profile = plot.profile(city, *drawn, safe_distance=clearance)
-        profile.savefig(picture, format="svg", metadata={"Date": None})
-    drawing = base64.b64encode(picture.getvalue()).decode()
-    measured = conditions_table(conditions) + table(city, routes[0], start, goal)
-    if risk_map is not None:
-        measured += risk_table(risk_map, routes, trial.curve)
-    measured += trial_table(trial, conditions)
-    rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in measured)
-    ball = clearance if clearance > 0 else None
-    flights = {} if trial.flight is None else {f"{drawn[0].planner}, flown in these gusts": trial.flight}
-    shown = drawn[1:] if flights else drawn  # the track covers its curve
-    limits = ""
-    if trial.limits is not None:
-        limits = f"<h2>Can it be flown?</h2>{trial.limits._repr_html_()}"
-    return PAGE.format(
-        title=html.escape(f"{routes[0].planner} through {city.name}"),
-        scene=html.escape(scene.page(city, *shown, flights=flights, safe_distance=ball, risk=risk_map)),
-        profile=f'<img alt="height and clearance along the route" src="data:image/svg+xml;base64,{drawing}">',
-        rows=rows,
-        limits=limits,
-        version=__version__,
-    )
-
-
-def conditions_table(conditions: Conditions) -> list[tuple[str, str]]:
-    """Weather, vehicle, and what they ask for, as name and value."""
-    uav, wind = conditions.uav, conditions.wind
-    rain = f", {wind.rain_mm_per_h:g} mm/h of rain" if wind.rain_mm_per_h else ""
-    rows = [
-        ("the UAV", f"{uav.name}, with a load of {uav.payload:g} kg"),
-        ("weather", f"wind of {wind.speed:.1f} m/s, gusts up to {conditions.gust:.1f} m/s{rain}"),
-        ("offsets to be survived", f"{3 * conditions.sigma:.1f} m (σ = {conditions.sigma:.2f} m)"),
-        ("distance to keep", f"{conditions.clearance:g} m"),
-    ]
-    return [(name, html.escape(value)) for name, value in rows]
-
-
-def trial_table(trial: Trial, conditions: Conditions) -> list[tuple[str, str]]:
-    """What became of the curve and its flights, as name and value."""
-    from uavlab.flight import crash_rate
-    from uavlab.spline import greatest_speed
-
-    rows = []
-    if trial.curve is not None:
-        repair = f"{trial.curve.info['rounds']} rounds of repair" if trial.curve.info["rounds"] else "no repair needed"
-        fastest = greatest_speed(trial.curve, conditions.uav, conditions.wind.mean)
-        rows += [
-            ("B-spline", f"{trial.curve.length:.1f} m, {len(trial.curve.control)} control points, {repair}"),
-            ("fastest without slowing down", f"{fastest:.1f} m/s"),
-        ]
-    if trial.flights is not None and trial.as_planned is not None:
-        flights = trial.flights
-        across, up = flights.samples.std(axis=0)
-        rows += [
-            ("crashes in these gusts", f"{crash_rate(flights)} ({len(flights.outcome)} flights)"),
-            ("offsets in these gusts", f"σ {across:.2f} m across the route, {up:.2f} m up and down"),
-            ("nearest to an obstacle", f"{flights.clearance.min():.2f} m from the centre of the body"),
-            ("time", f"{flights.duration.mean():.0f} s, slower than {conditions.uav.cruise_speed:g} m/s in turns"),
-            ("energy", f"{flights.energy.mean() / 3600:.2f} Wh from the battery"),
-            (f"crashes with σ = {conditions.sigma:.2f} m", str(crash_rate(trial.as_planned))),
-        ]
-    if trial.problem:
-        rows.append(("not flown", trial.problem))
-    return [(name, html.escape(value)) for name, value in rows]
-
-
-def table(city: "City", route: "Route", start: np.ndarray, goal: np.ndarray) -> list[tuple[str, str]]:
-    """What was planned and measured, as name and value."""
-    from uavlab.checks import show
-
-    rows = [
-        ("city", f"{city.name}: {' × '.join(map(str, city.shape))} voxels of {city.cell:g} m, "
-                 f"{city.occupied.mean():.1%} occupied, {len(city.buildings)} buildings"),
-        ("start, goal", f"{show(start)} m to {show(goal)} m"),
-        ("planner", route.planner),
-    ]  # fmt: skip
-    if route.reached:
-        rows += [
-            ("length", f"{route.length:.1f} m in {len(route.points) - 1} straight legs"),
-            ("least clearance", f"{route.clearance(city):.2f} m"),
-            ("steepest climb or descent", f"{np.degrees(np.abs(route.pitch).max()):.0f}°"),
-            ("sharpest turn", f"{np.degrees(route.turn.max(initial=0.0)):.0f}°"),
-        ]
-    else:
-        rows.append(("not reached", route.reason))
-    free = np.count_nonzero(~city.occupied)
-    rows.append(("search", f"{route.info['expanded']:,} expansions on {free:,} free nodes"))
-    return [(name, html.escape(value)) for name, value in rows]
-
-
-def risk_table(risk_map: "RiskMap", routes: list["Route"], curve: "Curve | None") -> list[tuple[str, str]]:
-    """What the routes cost on the risk map, as name and value."""
-    people, speed = 1e6 * risk_map.population_density, risk_map.uav.cruise_speed
-    rows = [("people on the ground", f"{people.mean():,.0f} per km² on average, at most {people.max():,.0f}")]
-    smoothed = [] if curve is None else [curve.route()]
-    for route in [*routes, *smoothed]:
-        if route.reached:
-            risk, deaths = risk_map.integral(route), risk_map.fatalities(route)
-            costs = f"{risk:.2e} per hour (∫ r ds/dx), {deaths:.1e} deaths per flight at {speed:g} m/s"
-            rows.append((f"risk: {route.planner}, {route.length:.1f} m", costs))
-    if len(routes) == 2:
-        saved = 1 - risk_map.integral(routes[0]) / risk_map.integral(routes[1])
-        longer = routes[0].length / routes[1].length - 1
-        rows.append(("against the shortest route", f"{saved:.0%} less risk for {longer:.1%} more way"))
-    return [(name, html.escape(value)) for name, value in rows]
-
-
-PAGE = """<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>
-<style>
-body{{font:15px/1.5 system-ui,sans-serif;max-width:960px;margin:1em auto;padding:0 1em;color:#222}}
-iframe{{width:100%;height:560px;border:1px solid #ccc}} img{{width:100%}}
-th{{text-align:left;padding-right:2em;font-weight:600;vertical-align:top}} td{{padding-right:1.5em}}
-</style></head><body>
-<h1>{title}</h1>
-<iframe title="3D scene" srcdoc="{scene}"></iframe>
-<p>Drag to turn, scroll to zoom, right-drag to move.</p>
-<h2>Height and clearance along the route</h2>
-{profile}
-<h2>Measured</h2>
-<table>{rows}</table>
-{limits}
-<p>uavlab {version}</p>
-</body></html>
-"""
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -10,7 +10,7 @@ from uavlab.city.readers import read_city, read_voxels
 from uavlab.city.source import Source
 from uavlab.city.table1 import table1_buildings, table1_city
 from uavlab.city.terrain import Terrain
-from uavlab.city.zones import NoFlyZone
+from uavlab.city.zones import NoFlyZone, read_no_fly
 
 __all__ = [
     "Building",
@@ -22,6 +22,7 @@ __all__ = [
     "read_city",
     "read_cityjson",
     "read_geojson",
+    "read_no_fly",
     "read_terrain",
     "read_voxels",
     "table1_buildings",

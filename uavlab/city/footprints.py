@@ -39,6 +39,14 @@ def features_of(document: Mapping[str, Any], path: Path) -> list[Mapping[str, An
     return features
 
 
+def declared_system(document: Mapping[str, Any]) -> Any:
+    """What a "crs" member names; None where there is none."""
+    crs = document.get("crs")
+    if isinstance(crs, dict) and isinstance(crs.get("properties"), dict):
+        return crs["properties"].get("name") or crs["properties"].get("code")
+    return crs if isinstance(crs, str | int) else None
+
+
 def footprints_of(features: Sequence[Mapping[str, Any]], notes: Notes) -> list[Footprint]:
     """All features with polygons that have an area, mended; what has none is noted."""
     found, without = [], 0

@@ -6,29 +6,39 @@ be understood is; what has to be assumed is said in `City.source`, and in one wa
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import shapely
 
 from uavlab import checks
+from uavlab.city.blocks import (
+    Block,
+    check_extent,
+    extents_of,
+    ground_below,
+    lowest_ground,
+    moved,
+    placed,
+    shifted,
+)
 from uavlab.city.buildings import Building, convex_parts, extrude
-from uavlab.city.documents import count, lowest_corner, progress, read_json
+from uavlab.city.documents import count, progress, read_json
 from uavlab.city.footprints import (
     BUILDING,
     OTHER,
     PART,
     Footprint,
+    declared_system,
     features_of,
     footprints_of,
     kinds_of,
     rest_of,
     without_parts,
 )
-from uavlab.city.lengths import length_in_metres
+from uavlab.city.heights import Wording, heights_of
 from uavlab.city.model import City
-from uavlab.city.place import Place, System, metres_per, system_for
-from uavlab.city.rasters import read_terrain
+from uavlab.city.place import System, metres_per, system_for
 from uavlab.city.source import Notes
 from uavlab.city.terrain import Terrain
 from uavlab.city.zones import NoFlyZone
@@ -40,9 +50,6 @@ ABOVE = ("auto", "ground", "sea")
 
 OSM_BASE = "min_height"
 """OpenStreetMap's key of an underside, which is always above ground."""
-
-SAMPLES = 2.0
-"""Between the places at which the ground under a footprint is looked at [m]."""
 
 
 def read_geojson(
@@ -129,18 +136,26 @@ def read_geojson(
     factor = metres_per(height_unit) if height_unit is not None else 1.0 if system is None else system.height_factor
     note_system(notes, system, crs, declared_system(documents[0]), height_unit)
     wording = Wording(height, base, default_height, storey_height, factor)
-    place = None if system is None else Place(*system.to_lonlat(bounds[:2]).tolist())
-    bodies = bodies_of(footprints, placed(footprints, system, place, bounds[:2]), wording, notes)
-    bodies = with_heights(bodies, wording, notes, path)
-    bodies = overridden_by_parts(bodies, notes)
-    lowest_corner(np.array([[*body.plan.bounds[a : a + 2], 0.0] for body in bodies for a in (0, 2)]), advice_on(system))
+    blocks = blocks_of(footprints, wording, notes)
+    blocks = with_heights(blocks, wording, notes, path)
+    place, blocks = placed(blocks, system)
+    check_extent(blocks, system)
+    blocks = overridden_by_parts(blocks, notes)
     above_sea = heights_above == "sea" or (
-        heights_above == "auto" and base != OSM_BASE and mostly_raised(bodies, notes)
+        heights_above == "auto" and base != OSM_BASE and mostly_raised(blocks, notes)
     )
-    ground, zero = ground_below(bodies, above_sea, terrain, place, notes)
+    ground = ground_below(blocks, above_sea, terrain, place, notes)
+    zero = lowest_ground(blocks, ground)
+    if place is None:
+        ground = shifted(ground, zero)
+    elif zero:  # metres at that height are a little longer
+        place, blocks = moved(blocks, place, place._replace(height=zero))
+        ground = ground_below(blocks, above_sea, terrain, place, Notes())
     buildings = [
-        building_of(body, *extent)
-        for body, extent in zip(progress(bodies, "buildings"), extents_of(bodies, above_sea, ground), strict=True)
+        building_of(block, *extent)
+        for block, extent in zip(
+            progress(blocks, "buildings"), extents_of(blocks, above_sea, ground, zero), strict=True
+        )
     ]
     source = notes.source(path.name, "GeoJSON")
     city = City.from_buildings(
@@ -148,7 +163,7 @@ def read_geojson(
         cell=cell,
         margin=margin,
         name=path.name.split(".")[0],
-        reference=None if place is None else place._replace(height=zero),
+        reference=place,
         source=source,
         terrain=ground,
         voxels=voxels,
@@ -158,39 +173,9 @@ def read_geojson(
     return city
 
 
-class Wording(NamedTuple):
-    """Where heights stand, and in what units."""
-
-    height: str | float
-    base: str | float
-    default_height: float | None
-    storey_height: float
-    unit: float
-
-
-class Body(NamedTuple):
-    """A footprint on the map with its heights."""
-
-    footprint: Footprint
-    kind: str
-    plan: shapely.MultiPolygon
-    """[m]"""
-    base: float
-    """[m]; NaN where it isn't known."""
-    top: float
-
-
 def kind_of_geometry(feature: Mapping[str, Any]) -> Any:
     geometry = feature.get("geometry")
     return geometry.get("type") if isinstance(geometry, dict) else geometry
-
-
-def declared_system(document: Mapping[str, Any]) -> Any:
-    """What a "crs" member names; None where there is none."""
-    crs = document.get("crs")
-    if isinstance(crs, dict) and isinstance(crs.get("properties"), dict):
-        return crs["properties"].get("name") or crs["properties"].get("code")
-    return crs if isinstance(crs, str | int) else None
 
 
 def note_system(notes: Notes, system: System | None, given: Any, declared: Any, height_unit: str | None) -> None:
@@ -206,122 +191,62 @@ def note_system(notes: Notes, system: System | None, given: Any, declared: Any, 
         notes.add("derived", f"heights without a unit are in {unit}", count=0)
 
 
-def advice_on(system: System | None) -> str:
-    if system is not None and system.degrees:
-        return "coordinates were read as degrees; if they are metres, pass crs='local'"
-    return "if the coordinates are in another system, pass its code, as in crs='EPSG:4326'"
-
-
-def placed(
-    footprints: Sequence[Footprint], system: System | None, place: Place | None, corner: np.ndarray
-) -> list[shapely.MultiPolygon]:
-    """The polygons in metres east and north of the place, all at once."""
-    polygons = np.array([footprint.polygons for footprint in footprints], dtype=object)
-    points = shapely.get_coordinates(polygons)
-    local = points - corner if system is None or place is None else place.east_north(system.to_lonlat(points))
-    return list(shapely.set_coordinates(polygons, local))
-
-
-def bodies_of(
-    footprints: Sequence[Footprint], plans: Sequence[shapely.MultiPolygon], wording: Wording, notes: Notes
-) -> list[Body]:
-    """Buildings and their parts, with the heights that are known."""
+def blocks_of(footprints: Sequence[Footprint], wording: Wording, notes: Notes) -> list[Block]:
+    """Buildings and their parts in the coordinates of the file, with the heights that are known."""
     heights = [heights_of(footprint, wording, notes) for footprint in footprints]
     kinds = kinds_of(footprints, [not np.isnan(top) for _, top in heights])
     others = kinds.count(OTHER)
     if others:
         notes.add("derived", f"{OTHER}: polygons that are no building and have no height", count=others)
     return [
-        Body(footprint, kind, plan, base, top)
-        for footprint, kind, plan, (base, top) in zip(footprints, kinds, plans, heights, strict=True)
+        Block(footprint, kind, footprint.polygons, base, top)
+        for footprint, kind, (base, top) in zip(footprints, kinds, heights, strict=True)
         if kind != OTHER
     ]
 
 
-def heights_of(footprint: Footprint, wording: Wording, notes: Notes) -> tuple[float, float]:
-    """Base and top of a footprint [m]; the top NaN where the file doesn't say."""
-    properties, unit, storey = footprint.properties, wording.unit, wording.storey_height
-    base = stated(wording.base, properties, wording)
-    if np.isnan(base):
-        storeys = first_of(properties, ("building:min_level", "min_floor"))
-        base = 0.0 if np.isnan(storeys) else storeys * storey
-    top = stated(wording.height, properties, wording)
-    if np.isnan(top):
-        if isinstance(wording.height, str) and properties.get(wording.height) not in (None, ""):
-            notes.add("derived", f"a {wording.height} that can't be understood counts as unknown", footprint.label)
-        storeys = first_of(properties, ("building:levels", "num_floors"))
-        if storeys > 0:
-            roof = length_in_metres(properties.get("roof:height"), unit)
-            roof = roof if roof >= 0 else max(0.0, np.nan_to_num(first_of(properties, ("roof:levels",)))) * storey
-            top = storeys * storey + roof
-            notes.add("derived", f"height from storeys of {storey:g} m", footprint.label)
-    if top <= 0:
-        notes.add("derived", "a height of 0 counts as unknown", footprint.label)
-        top = np.nan
-    if top <= base:
-        notes.add("mended", "underside not below the roof: taken from the ground", footprint.label)
-        base = 0.0
-    return base, top
-
-
-def stated(what: str | float, properties: Mapping[str, Any], wording: Wording) -> float:
-    """A height [m] given for all, or by a property; NaN where that says nothing that can be understood."""
-    if not isinstance(what, str):
-        return float(what)
-    if what.endswith("levels"):
-        return length_in_metres(properties.get(what)) * wording.storey_height
-    return length_in_metres(properties.get(what), wording.unit)
-
-
-def first_of(properties: Mapping[str, Any], names: Sequence[str]) -> float:
-    """The first of several numbers that is there; else NaN."""
-    for name in names:
-        number = length_in_metres(properties.get(name))
-        if not np.isnan(number):
-            return number
-    return np.nan
-
-
-def with_heights(bodies: Sequence[Body], wording: Wording, notes: Notes, path: Path) -> list[Body]:
-    """All bodies with a height; parts without one wait for their outline. `ValueError` where none is known."""
-    unknown = [body for body in bodies if np.isnan(body.top) and body.kind == BUILDING]
+def with_heights(blocks: Sequence[Block], wording: Wording, notes: Notes, path: Path) -> list[Block]:
+    """All blocks with a height; parts without one wait for their outline. `ValueError` where none is known."""
+    unknown = [block for block in blocks if np.isnan(block.top) and block.kind == BUILDING]
     if unknown and wording.default_height is None:
-        known = sorted({key for body in bodies for key in body.footprint.properties})
+        known = sorted({key for block in blocks for key in block.footprint.properties})
         raise ValueError(
-            f"{len(unknown)} of {len(bodies)} buildings in {path.name} have no height that can be understood, with "
+            f"{len(unknown)} of {len(blocks)} buildings in {path.name} have no height that can be understood, with "
             f"height={wording.height!r}, nor storeys; the first is {unknown[0].footprint.label!r} with "
             f"{unknown[0].footprint.properties.get(str(wording.height))!r}. Properties in the file: "
             f"{', '.join(known) or 'none'}. Pass default_height=10.0, or height='one of them', or a number for all"
         )
-    for body in unknown:
-        notes.add("assumed", f"height of {wording.default_height:g} m (default_height)", body.footprint.label)
+    for block in unknown:
+        notes.add("assumed", f"height of {wording.default_height:g} m (default_height)", block.footprint.label)
     return [
-        body._replace(top=max(float(wording.default_height), body.base + 1.0))
-        if np.isnan(body.top) and body.kind == BUILDING and wording.default_height is not None
-        else body
-        for body in bodies
+        block._replace(top=max(float(wording.default_height), block.base + 1.0))
+        if np.isnan(block.top) and block.kind == BUILDING and wording.default_height is not None
+        else block
+        for block in blocks
     ]
 
 
-def overridden_by_parts(bodies: Sequence[Body], notes: Notes) -> list[Body]:
+def overridden_by_parts(blocks: Sequence[Block], notes: Notes) -> list[Block]:
     """Bodies without the outlines that are described by their parts; what no part covers stays as high as it was."""
-    parts = [body for body in bodies if body.kind == PART]
-    outlines = [body for body in bodies if body.kind != PART]
+    parts = [block for block in blocks if block.kind == PART]
+    outlines = [block for block in blocks if block.kind != PART]
     if not parts:
-        notes.add("taken", BUILDING, count=len(bodies))
-        return list(bodies)
-    kept: list[Body] = []
+        notes.add("taken", BUILDING, count=len(blocks))
+        return list(blocks)
+    kept: list[Block] = []
     heirs: dict[int, float] = {}
-    for body, members in zip(outlines, without_parts([b.plan for b in outlines], [p.plan for p in parts]), strict=True):
-        heirs |= {number: max(heirs.get(number, 0.0), body.top) for number in members}
+    for block, members in zip(
+        outlines, without_parts([b.plan for b in outlines], [p.plan for p in parts]), strict=True
+    ):
+        heirs |= {number: max(heirs.get(number, 0.0), block.top) for number in members}
         if not members:
-            kept.append(body)
+            kept.append(block)
             continue
-        notes.add("derived", "outline overridden by its parts", body.footprint.label)
-        rest = rest_of(body.plan, [parts[number].plan for number in members])
+        notes.add("derived", "outline overridden by its parts", block.footprint.label)
+        rest = rest_of(block.plan, [parts[number].plan for number in members])
         if not rest.is_empty:
-            notes.add("derived", "what no part covers, as high as its outline", body.footprint.label)
-            kept.append(body._replace(plan=rest))
+            notes.add("derived", "what no part covers, as high as its outline", block.footprint.label)
+            kept.append(block._replace(plan=rest))
     for number, part in enumerate(parts):
         if np.isnan(part.top):
             if number not in heirs:
@@ -330,83 +255,20 @@ def overridden_by_parts(bodies: Sequence[Body], notes: Notes) -> list[Body]:
             notes.add("derived", "part as high as its outline", part.footprint.label)
             part = part._replace(top=max(heirs[number], part.base + 1.0))
         kept.append(part)
-    notes.add("taken", BUILDING, count=sum(body.kind != PART for body in kept))
-    notes.add("taken", PART, count=sum(body.kind == PART for body in kept))
+    notes.add("taken", BUILDING, count=sum(block.kind != PART for block in kept))
+    notes.add("taken", PART, count=sum(block.kind == PART for block in kept))
     return kept
 
 
-def mostly_raised(bodies: Sequence[Body], notes: Notes) -> bool:
+def mostly_raised(blocks: Sequence[Block], notes: Notes) -> bool:
     """Whether bases are heights above the sea, as most of them are not at 0; says so."""
-    if 2 * sum(body.base >= 1.0 for body in bodies) <= len(bodies):
+    if 2 * sum(block.base >= 1.0 for block in blocks) <= len(blocks):
         return False
     notes.add("assumed", "heights above the sea, as most bases are above 1 m (heights_above='ground' if not)", count=0)
     return True
 
 
-def ground_below(
-    bodies: Sequence[Body], above_sea: bool, terrain: Any, place: Place | None, notes: Notes
-) -> tuple[Terrain | float, float]:
-    """The ground on the map, and how high its zero is in the file's vertical system [m]."""
-    if terrain is None and not above_sea:
-        notes.add("derived", "level ground at z = 0", count=0)
-        return 0.0, 0.0
-    if isinstance(terrain, int | float):
-        checks.finite("terrain", terrain)
-        return 0.0, float(terrain)
-    if terrain is None:
-        feet = [
-            np.column_stack([c, np.full(len(c), b.base)]) for b in bodies for c in [shapely.get_coordinates(b.plan)]
-        ]
-        surface = Terrain.from_points(np.concatenate(feet))
-        notes.add("derived", "ground through the feet of the buildings, linear in between", count=0)
-    else:
-        surface = read_terrain(terrain) if isinstance(terrain, str | Path) else terrain
-        checks.instance("terrain", surface, Terrain)
-        surface = surface.placed(None if place is None else place._replace(height=0.0))
-        notes.add("derived", "ground from the terrain given", count=0)
-    zero = float(min(low for low, _ in ranges_under(bodies, surface)))
-    return shifted(surface, zero), zero
-
-
-def shifted(surface: Terrain, zero: float) -> Terrain:
-    return Terrain(surface.points - [0.0, 0.0, zero], surface.triangles, beyond=surface.beyond)
-
-
-def ranges_under(bodies: Sequence[Body], surface: Terrain) -> list[tuple[float, float]]:
-    """Lowest and highest ground under each footprint, looked for at its corners and every few metres inside [m]."""
-    places = [places_in(body.plan) for body in bodies]
-    heights = surface.heights_at(np.concatenate(places))
-    ends = np.cumsum([len(some) for some in places])
-    ranges = []
-    for body, under in zip(bodies, np.split(heights, ends[:-1]), strict=True):
-        if np.isnan(under).any():
-            raise ValueError(
-                f"terrain says nothing about the ground under {body.footprint.label!r}: give a larger one, or "
-                "terrain.filled(), which goes on beyond its edges and through holes"
-            )
-        ranges.append((float(under.min()), float(under.max())))
-    return ranges
-
-
-def places_in(plan: shapely.MultiPolygon) -> np.ndarray:
-    west, south, east, north = plan.bounds
-    x, y = np.meshgrid(np.arange(west, east, SAMPLES), np.arange(south, north, SAMPLES))
-    inside = shapely.contains_xy(plan, x, y)
-    return np.concatenate([shapely.get_coordinates(plan), np.column_stack([x[inside], y[inside]])])
-
-
-def extents_of(bodies: Sequence[Body], above_sea: bool, ground: Terrain | float) -> list[tuple[float, float]]:
-    """Underside and roof of each body on the map [m]."""
-    if not isinstance(ground, Terrain):
-        return [(body.base, body.top) for body in bodies]
-    if above_sea:
-        zero = min(body.base for body in bodies)
-        return [(body.base - zero, body.top - zero) for body in bodies]
-    ranges = ranges_under(bodies, ground)
-    return [(low + body.base, high + body.top) for body, (low, high) in zip(bodies, ranges, strict=True)]
-
-
-def building_of(body: Body, bottom: float, top: float) -> Building:
+def building_of(block: Block, bottom: float, top: float) -> Building:
     """A prism over each polygon."""
-    parts = [part for polygon in body.plan.geoms for part in convex_parts(polygon)]
-    return Building(tuple(extrude(part, bottom, top) for part in parts), body.footprint.name)
+    parts = [part for polygon in block.plan.geoms for part in convex_parts(polygon)]
+    return Building(tuple(extrude(part, bottom, top) for part in parts), block.footprint.name)

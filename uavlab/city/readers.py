@@ -5,7 +5,8 @@ of the buildings and z = 0 the lowest ground at one. The map begins `margin` met
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -42,18 +43,27 @@ def read_city(path: str | Path, **options: Any) -> City:
     with path.open("rb") as file:
         start = file.read(FIRST_BYTES).removeprefix(b"\xef\xbb\xbf").lstrip(b" \t\r\n\x1e")
     if path.suffix.lower() == ".3dmap" or start.startswith(b"voxel"):
-        return read_voxels(path, **options)
+        return read_voxels(path, **fitting(read_voxels, options, "a voxel map"))
     if start.startswith(b"{") or path.suffix.lower() in {".json", ".jsonl", ".geojson"}:
         kind = KIND.search(start)  # not by parsing, which takes long for a large file
         found = kind[1].decode() if kind else read_json(path)[0].get("type")
         if found == "CityJSON":
-            return read_cityjson(path, **options)
+            return read_cityjson(path, **fitting(read_cityjson, options, "CityJSON"))
         if found in GEOJSON:
-            return read_geojson(path, **options)
+            return read_geojson(path, **fitting(read_geojson, options, "GeoJSON"))
     raise ValueError(
         f"{path.name} is not a city that can be read. Known are GeoJSON (.geojson, .json: footprints with heights), "
         "CityJSON (.city.json, .json, .jsonl: models with roofs) and voxel maps (.3dmap)"
     )
+
+
+def fitting(reader: Callable[..., City], options: dict[str, Any], kind: str) -> dict[str, Any]:
+    """The options, if the reader takes them."""
+    known = [name for name in signature(reader).parameters if name != "path"]
+    for name in options:
+        if name not in known:
+            raise ValueError(f"{name} is no option for {kind}, which takes {', '.join(known)}")
+    return options
 
 
 def read_voxels(path: str | Path, *, cell: float = 1.0) -> City:

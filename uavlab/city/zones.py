@@ -3,12 +3,22 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 
 from uavlab import checks
 from uavlab.city.buildings import convex_parts, extrude, footprint_polygon
+from uavlab.city.documents import read_json
+from uavlab.city.footprints import Footprint, declared_system, features_of, footprints_of
+from uavlab.city.lengths import length_in_metres
+from uavlab.city.place import LOCAL, system_for
+from uavlab.city.source import Notes
+
+if TYPE_CHECKING:
+    from uavlab.city.model import City
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,3 +81,69 @@ def checked_zones(no_fly: object) -> tuple[NoFlyZone, ...]:
     for number, zone in enumerate(no_fly):
         checks.instance(f"no_fly[{number}]", zone, NoFlyZone)
     return tuple(no_fly)
+
+
+def read_no_fly(
+    path: str | Path,
+    city: "City",
+    *,
+    lower: str | float = "lower",
+    upper: str | float = "upper",
+    crs: Any = None,
+) -> tuple[NoFlyZone, ...]:
+    """No-fly zones from the polygons of a GeoJSON file, for `dataclasses.replace(city, no_fly=...)`.
+
+    Parameters
+    ----------
+    path : str or Path
+    city : City
+        On whose map they lie.
+    lower, upper : str or float
+        Properties that hold the limits above ground, a number of metres or a text like "400 ft", or one for all [m];
+        where they are absent, 0 and no upper limit.
+    crs : anything that pyproj takes, or "local", optional
+        The reference system of the coordinates, as for `read_geojson`; "local": the city's own metres,
+        as where neither file nor city knows where on Earth it lies.
+
+    Raises
+    ------
+    ValueError
+        If the file is broken or has no polygon, a limit can't be understood, or the city doesn't know where on Earth it
+        lies.
+    """
+    path, notes = Path(path), Notes()
+    documents = read_json(path)
+    zones = footprints_of([feature for document in documents for feature in features_of(document, path)], notes)
+    if not zones:
+        raise ValueError(f"{path.name} has no polygon with an area, so no zone")
+    bounds = shapely.total_bounds([zone.polygons for zone in zones])
+    declared = declared_system(documents[0])
+    if declared is None and crs is None and city.reference is None:
+        crs = LOCAL  # neither knows where on Earth it lies
+    system = system_for(bounds, declared, crs, path.name)
+    polygons = np.array([zone.polygons for zone in zones], dtype=object)
+    if system is not None:
+        local = city.checked_reference().east_north(system.to_lonlat(shapely.get_coordinates(polygons)))
+        polygons = shapely.set_coordinates(polygons, local)
+    found = []
+    for zone, plan in zip(zones, polygons, strict=True):
+        low, high = limit_of(zone, lower, 0.0), limit_of(zone, upper, np.inf)
+        for polygon in plan.geoms:
+            holes = tuple(shapely.get_coordinates(ring) for ring in polygon.interiors)
+            found.append(NoFlyZone(shapely.get_coordinates(polygon.exterior), low, high, holes, zone.name))
+    return tuple(found)
+
+
+def limit_of(zone: Footprint, limit: str | float, otherwise: float) -> float:
+    """A limit of a zone [m]; `ValueError` where it stands there and can't be understood."""
+    if not isinstance(limit, str):
+        return float(limit)
+    value = zone.properties.get(limit)
+    if value in (None, ""):
+        return otherwise
+    metres = length_in_metres(value)
+    if np.isnan(metres):
+        raise ValueError(
+            f"{limit} of {zone.label!r} must be a height in metres, such as 120 or '400 ft', got {value!r}"
+        )
+    return metres

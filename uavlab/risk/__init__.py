@@ -17,6 +17,7 @@ from uavlab.risk.fall import (
 )
 from uavlab.risk.layers import raster_layer, road_layer, shelter_layer
 from uavlab.risk.model import RiskMap
+from uavlab.risk.osm import osm_layers
 from uavlab.risk.rates import (
     POPULATION_DENSITY,
     SHELTER,
@@ -41,6 +42,7 @@ __all__ = [
     "impact_energy",
     "impact_fatality",
     "lethal_area",
+    "osm_layers",
     "person_rate",
     "printed_threat",
     "random_campus",

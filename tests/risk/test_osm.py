@@ -1,0 +1,93 @@
+import json
+
+import numpy as np
+import pytest
+
+from uavlab.city import read_geojson
+from uavlab.risk import RiskMap, osm_layers, vehicle_share
+
+
+def lonlat(points, at=(4.36, 52.01)):
+    return [[at[0] + x / 68_600, at[1] + y / 111_260] for x, y in points]  # metres per degree in Delft, to 0.1 %
+
+
+def feature(kind, points, **properties):
+    coordinates = [lonlat(points)] if kind == "Polygon" else lonlat(points)
+    return {"type": "Feature", "properties": properties, "geometry": {"type": kind, "coordinates": coordinates}}
+
+
+def square(west, south, side):
+    return [(west, south), (west + side, south), (west + side, south + side), (west, south + side)]
+
+
+HOUSE = feature("Polygon", square(0, 0, 20), building="yes", height="12 m")
+WOOD = feature("Polygon", square(60, 0, 40), natural="wood")
+PARK = feature("Polygon", square(60, 0, 80), leisure="park")
+ROAD = feature("LineString", [(0, 50), (140, 50)], highway="residential")
+
+
+@pytest.fixture
+def town(tmp_path):
+    def read(*features):
+        path = tmp_path / "town.geojson"
+        path.write_text(json.dumps({"type": "FeatureCollection", "features": list(features)}))
+        return read_geojson(path, cell=5.0, margin=150.0), path
+
+    return read
+
+
+def test_woods_and_parks_shelter_and_houses_do(town):
+    city, path = town(HOUSE, WOOD, PARK)
+    layers = osm_layers(city, path)
+
+    def at(x, y):
+        return layers.shelter[tuple(city.cell_of((x, y, 1.0))[:2])]
+
+    assert (at(10, 10), at(80, 20), at(130, 70), at(-50, -50)) == (0.75, 0.5, 0.25, 0.0)
+    assert layers.source.count("taken", "land as trees or low buildings") == 1
+    assert RiskMap(city, 0.01, layers.shelter, layers.vehicle_share).rate.min() >= 0
+
+
+@pytest.mark.parametrize(
+    ("properties", "width"),
+    [({}, 6.0), ({"lanes": "3"}, 9.0), ({"width": "4 m"}, 4.0), ({"width": "20 ft"}, 6.096), ({"lanes": "many"}, 6.0)],
+)
+def test_roads_are_as_wide_as_they_say_or_as_usual(town, properties, width):
+    city, path = town(HOUSE, feature("LineString", [(0, 50), (140, 50)], highway="residential", **properties))
+    share = osm_layers(city, path).vehicle_share
+    assert share.sum() * city.cell**2 == pytest.approx(140 * width * float(vehicle_share()), rel=2e-3)
+    busy = osm_layers(city, path, cars_per_km=10.0).vehicle_share
+    assert busy.sum() == pytest.approx(100 * share.sum())
+
+
+def test_ways_without_cars_and_tunnels_have_none(town):
+    ways = [
+        feature("LineString", [(0, 50), (140, 50)], highway="footway"),
+        feature("LineString", [(0, 60), (140, 60)], highway="primary", tunnel="yes"),
+        feature("LineString", [(0, 70), (140, 70)], railway="rail"),
+    ]
+    city, path = town(HOUSE, *ways)
+    layers = osm_layers(city, path)
+    assert not layers.vehicle_share.any()
+    assert "no road" in str(layers.source)
+
+
+def test_what_is_assumed_of_roads_is_said(town):
+    city, path = town(HOUSE, ROAD)
+    said = str(osm_layers(city, path).source)
+    assert "assumed: 1 × width of a road from the usual lanes of its class, of 3 m" in said
+    assert "assumed: 0.1 cars per km of each lane, on all roads" in said
+
+
+def test_broken_roads_and_unknown_places_are_refused(town):
+    city, path = town(
+        HOUSE, {"type": "Feature", "properties": {"highway": "primary"}, "geometry": {"type": "LineString"}}
+    )
+    with pytest.raises(ValueError, match=r"feature 1 \(counted from 0\) of town\.geojson is malformed"):
+        osm_layers(city, path)
+    city, path = town(HOUSE, ROAD)
+    nowhere = type(city)(np.zeros((3, 3, 3), bool), name="nowhere")
+    with pytest.raises(ValueError, match="'nowhere' doesn't know where on Earth it lies"):
+        osm_layers(nowhere, path)
+    with pytest.raises(ValueError, match="city must be a City"):
+        osm_layers(path, path)
