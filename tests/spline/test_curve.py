@@ -354,7 +354,7 @@ def test_the_sagitta_is_that_across_the_curve_where_it_runs_straight_and_along_i
     straight = Curve([(0, 0, 0)] * 3 + [(4, 3, 0)] + [(9, 6.75, 0)] * 3, step=0.5)
     assert np.linalg.norm(straight.acceleration, axis=1).max() > 1
     assert straight.sagitta == pytest.approx(0, abs=1e-12)
-    back = Curve([(0, 0, 0), (4, 0, 0), (0, 0, 0), (4, 0, 0)], step=1.0)
+    back = Curve([(0, 0, 0), (7, 0, 0), (0, 0, 0), (5, 0, 0)], step=1.7)
     start, end = np.minimum(back.points[:-1], back.points[1:]), np.maximum(back.points[:-1], back.points[1:])
     dense = back.at(finer(back))[..., 0]
     over = np.maximum(dense - end[:, :1], start[:, :1] - dense).max(axis=1)
