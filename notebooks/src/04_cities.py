@@ -436,8 +436,8 @@ assert [round(100 * excess["touched", c]) for c in (4.0, 2.0, 1.0)] == [53, 26, 
 # %% [markdown]
 # By centres a voxel city has the right volume on average; a single one is off by a spread that falls faster than the
 # cell. By touch it is always too large, about in proportion to the cell: each wall moves outwards by half a cell on
-# average. The lesson for both: **a voxel map is one throw of the dice**. Who compares planners at one resolution
-# should also shift the grid.
+# average. The lesson for both: **a voxel map is one throw of the dice**. If you compare planners at one resolution,
+# shift the grid as well.
 #
 # The same section at all four resolutions, by centres, true outlines in orange:
 
@@ -870,7 +870,7 @@ assert not lake.polygon.buffer(-0.01).intersects(shapely.LineString(ways["lake c
 folder.cleanup()
 figure = plot.section(closed, 9.0, None, *(replace(way, planner=name) for name, way in ways.items()))
 figure.axes[0].add_patch(plt.Polygon(lake.outline, facecolor="white", alpha=0.6, edgecolor="0.2", hatch="//"))
-figure.axes[0].annotate("no-fly zone", lake.outline.mean(axis=0), ha="center", va="top")
+figure.axes[0].annotate("no-fly zone", lake.outline.mean(axis=0) + (0, 8), ha="center")
 figure
 
 # %% [markdown]
