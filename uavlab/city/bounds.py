@@ -1,6 +1,6 @@
 """What a straight leg must keep at each of its points: its distance to obstacles, out of no-fly zones, heights.
 
-A planner on the grid asks only at the centres of voxels, which is enough for its short moves (see `uavlab.planners.grid`);
+A planner on the grid asks only at the centres of voxels, enough for its short moves (see `uavlab.planners.grid`);
 legs at any angle and curves are asked all along. Compiled code counts in cells.
 """
 
