@@ -37,8 +37,7 @@ from matplotlib.colors import LogNorm
 from scipy import stats
 
 from uavlab import plot, risk, scene
-from uavlab.city import read_geojson
-from uavlab.city.geojson import longitude_latitude
+from uavlab.city import Place, read_geojson
 from uavlab.planners.least_risk import least_risk, pareto_front
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 from uavlab.vehicle import RISK_QUADROTOR
@@ -817,12 +816,12 @@ scene.show(campus.city, *both_optima, risk=campus)
 # like both papers' campuses.
 
 # %%
-REFERENCE = 108.913, 34.246  # longitude and latitude [degrees] of x = y = 0
+REFERENCE = Place(108.913, 34.246)  # longitude and latitude [degrees] of x = y = 0
 
 
 def lonlat(points):
     """Metres east and north of the reference as longitudes and latitudes."""
-    return longitude_latitude(np.asarray(points, dtype=float), REFERENCE).tolist()
+    return REFERENCE.longitude_latitude(points).tolist()
 
 
 outlines = [(0, 0, 40, 30, 18), (70, 0, 110, 30, 30), (140, 0, 170, 30, 12)]  # west, south, east, north, height
@@ -841,18 +840,17 @@ print(f"{len(town.buildings)} buildings, {' × '.join(map(str, town.shape))} vox
 # %%
 people = np.array([[60, 20, 15, 70], [80, 5, 10, 120], [150, 130, 140, 90.0]])  # per pixel, first row in the north
 corners = np.array(lonlat([(-40, -40), (220, 155)]))
-pixel = (260 / 4) * (195 / 3)  # m²
-population = risk.raster_layer(town, people / pixel, corners.ravel(), geographic=True)
+population = risk.raster_layer(town, people, corners.ravel(), crs="EPSG:4326", per="pixel")
 
 roads = [lonlat([(-30, 45), (200, 45)]), lonlat([(55, -30), (55, 140)]), lonlat([(125, -30), (125, 140)])]
-cars = risk.road_layer(town, roads, width=[12.0, 6.0, 6.0], cars_per_km=[8.0, 0.5, 0.5], geographic=True)
+cars = risk.road_layer(town, roads, width=[12.0, 6.0, 6.0], cars_per_km=[8.0, 0.5, 0.5], crs="EPSG:4326")
 
 ground = np.full(town.shape[:2], "sparse trees", dtype="<U22")
 x, y = (town.origin[axis] + town.cell * (np.arange(town.shape[axis]) + 0.5) for axis in range(2))
 ground[np.ix_((x > 60) & (x < 120), (y > 55) & (y < 115))] = "trees or low buildings"  # a park
 ground[np.ix_((x > -20) & (x < 60), (y > 30) & (y < 55))] = "none"  # a square
 shelter = risk.shelter_layer(town, np.where(cars > 0, "none", ground))
-town_risk = RiskMap(town, population, shelter, cars, lowest_height=10.0)
+town_risk = RiskMap(town, population, shelter, cars, min_height=10.0)
 plot.layers(town_risk)
 
 # %%
