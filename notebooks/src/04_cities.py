@@ -870,7 +870,7 @@ assert not lake.polygon.buffer(-0.01).intersects(shapely.LineString(ways["lake c
 folder.cleanup()
 figure = plot.section(closed, 9.0, None, *(replace(way, planner=name) for name, way in ways.items()))
 figure.axes[0].add_patch(plt.Polygon(lake.outline, facecolor="white", alpha=0.6, edgecolor="0.2", hatch="//"))
-figure.axes[0].annotate("no-fly zone", lake.outline.mean(axis=0) + (0, 8), ha="center")
+figure.axes[0].annotate("no-fly zone", lake.outline.mean(axis=0) + np.array([0, 8]), ha="center")
 figure
 
 # %% [markdown]
