@@ -103,7 +103,7 @@ def test_clearance_is_the_least_distance_of_dense_samples_to_the_boxes(cell, ori
         assert sampled.min() - 0.01 * cell - rounding <= route.clearance(city) <= sampled.min() + rounding
         distance, clearance = route.clearance_profile(city)
         assert clearance.min() == pytest.approx(route.clearance(city), abs=1e-9 * cell + 4 * rounding)
-        index, length = city.voxels_along(route.points)
+        _, length = city.voxels_along(route.points)
         for middle, stay, least in zip(distance, length, clearance, strict=True):
             flown = np.linspace(middle - stay / 2, middle + stay / 2, 30)
             points = np.stack([np.interp(flown, route.distance, axis) for axis in route.points.T], axis=1)

@@ -64,7 +64,7 @@ def test_heights_and_zones_and_the_border_are_kept():
     assert not kept(city, *leg(4.0, 6.501, city), 0.0, 6.0, 6.5)[0]
     assert not kept(city, *leg(4.0, 6.1, city), 0.0, 6.0, 6.5, rise=0.2)[0]
     assert not kept(city, city.origin + 4.0, city.origin + np.array([4, 4, 24.001]))[0]
-    zoned = town(no_fly=(NoFlyZone(np.array([(2, 2), (6, 2), (6, 6), (2, 6)]) + (5e5, 5e6), 0.0, 8.0),))
+    zoned = town(no_fly=(NoFlyZone(np.array([(2, 2), (6, 2), (6, 6), (2, 6)]) + np.array([5e5, 5e6]), 0.0, 8.0),))
     assert not kept(zoned, *leg(3.0, 4.0, zoned))[0]
     assert kept(zoned, *leg(6.001, 4.0, zoned))[0]
     assert kept(zoned, *leg(3.0, 8.001, zoned))[0]

@@ -287,7 +287,7 @@ def test_breaches_say_what_is_wrong_in_metres():
 
 
 def test_way_too_low_or_too_high_is_a_breach():
-    """A leg that climbs from z = 1 to 5 over 8 voxels of 1; in the columns from x = 4 on it must be 3 high, at most 4.5."""
+    """A leg that climbs from z = 1 to 5 over 8 voxels; in the columns from x = 4 on it must be 3 high, at most 4.5."""
     sky = sky_over(np.ones((8, 1, 6)), np.zeros((8, 1, 6), bool))
     leg = np.array([[(0, 0.5, 1), (8 - 1e-9, 0.5, 5)]])
     assert costs_of(sky, leg)[1][0] == 0
