@@ -19,12 +19,13 @@ from typing import Any
 import meshcat
 import meshcat.geometry as g
 import numpy as np
+import numpy.typing as npt
 import umsgpack
 from matplotlib.colors import to_rgb
 from meshcat.animation import Animation
 from meshcat.transformations import translation_matrix
 
-from uavlab import plot
+from uavlab import checks, plot
 from uavlab.city import City
 from uavlab.flight import Flight
 from uavlab.risk import RiskMap
@@ -38,6 +39,8 @@ EXPANSION_BATCHES = 40
 MOST_POINTS = 12_000
 """Larger expansions are thinned out evenly, so that their page stays small."""
 FIELD_OF_VIEW_DEG = 40.0
+FAR_OFF = 1000.0
+"""Scenes lie about the multiple of this that is next to their map's centre [m]: viewers count in float32."""
 
 
 class Scene:
@@ -98,7 +101,8 @@ def page(
     Parameters
     ----------
     city : City
-        Drawn from its buildings, roofs included; from its voxels where it knows no buildings.
+        Drawn from its buildings, roofs included; from its voxels where it knows no buildings. Its ground is a surface
+        with a grid on it, no-fly zones are prisms that one can look through.
     routes : Route
         Drawn as tubes, each in a colour of its own; routes that didn't arrive are named in the legend.
     safe_distance : float, optional
@@ -129,8 +133,9 @@ def page(
     plot.check_drawn(city, routes, risk)
     if slice_height is not None and risk is None:
         raise ValueError("slice_height needs risk=..., the map to cut")
-    if safe_distance is not None and not safe_distance > 0:
-        raise ValueError(f"safe_distance must be the radius of a ball in metres, above 0, got {safe_distance!r}")
+    if safe_distance is not None:
+        checks.positive_number("safe_distance", safe_distance)
+        safe_distance = float(safe_distance)  # the viewer's commands take no NumPy scalars
     if expansion and not (routes and "order" in routes[0].info):
         raise ValueError("expansion needs a first route planned with record=True")
     named = plot.named_flights(flights)
@@ -138,8 +143,10 @@ def page(
         raise ValueError("expansion and flights are two animations: show them in two scenes")
     window = CommandRecorder()
     scene = meshcat.Visualizer(window=window)
-    set_stage(scene, city)
+    set_stage(scene, city, painted=risk is not None)
     draw_city(scene["city"], city)
+    if city.no_fly:
+        draw_zones(scene["no_fly"], city)
     if risk is not None:
         draw_risk(scene["risk"], risk, slice_height)
     animation = Animation(default_framerate=FRAMES_PER_SECOND)
@@ -164,7 +171,8 @@ def page(
 def legend(city: City, routes: tuple[Route, ...], flights: Mapping[str, Flight], risk: RiskMap | None = None) -> str:
     """What the colours mean and how large things are, as HTML."""
     colors = plot.route_colors(len(routes) + len(flights))
-    lines = [f"<b>{html.escape(city.name)}</b> · squares of {grid_spacing(city):g} m · x → east, y → north, z → up"]
+    about = [f"<b>{html.escape(city.name)}</b>", f"squares of {grid_spacing(city):g} m", "x → east, y → north, z → up"]
+    lines = [" · ".join(filter(None, [*about, plot.ground_words(city)]))]
     texts = [
         f"{route.planner}: {route.length:.1f} m" if route.reached else f"{route.planner}: {route.reason}"
         for route in routes
@@ -172,6 +180,11 @@ def legend(city: City, routes: tuple[Route, ...], flights: Mapping[str, Flight],
     texts += [plot.label_of_flight(name, flight) for name, flight in flights.items()]
     for text, color in zip(texts, colors, strict=True):
         lines.append(f'<span style="color:{color}">&#9608;&#9608;</span> {html.escape(text)}')
+    zones = plot.zones_at(city)
+    if zones:
+        lines.append(
+            f'<span style="color:{plot.ZONE_COLOR}">&#9618;&#9618;</span> {html.escape(plot.zone_label(zones))}'
+        )
     marks = []
     if any(len(route.points) > 1 for route in routes) or any(len(flight.log) > 1 for flight in flights.values()):
         marks += ["&#9679; start", "&#9650; goal"]
@@ -191,13 +204,19 @@ def legend(city: City, routes: tuple[Route, ...], flights: Mapping[str, Flight],
     return "<br>".join(lines)
 
 
-def set_stage(scene: meshcat.Visualizer, city: City) -> None:
-    """Ground, light and a camera that sees the whole map."""
+def nearby(city: City, points: np.ndarray) -> np.ndarray:
+    """Points (..., 3) [m] of a map that may lie far off, such as in UTM, from a multiple of a kilometre near it."""
+    return points - FAR_OFF * np.round(city.bounds.mean(axis=0) / FAR_OFF)
+
+
+def set_stage(scene: meshcat.Visualizer, city: City, *, painted: bool = False) -> None:
+    """Ground, if it isn't painted, light and a camera that sees the whole map."""
     low, high = city.bounds
     size = high - low
     center = (low + high) / 2
     top = max((building.bounds[1, 2] for building in city.buildings), default=high[2])
-    center[2] = low[2] + 0.34 * (top - low[2])
+    floor = low[2] if city.ground is None else city.ground.min()
+    center[2] = floor + 0.34 * (max(top, floor) - floor)
     reach = float(np.hypot(size[0], size[1]))
     scene["/Background"].set_property("top_color", [0.86, 0.92, 1.0])
     scene["/Background"].set_property("bottom_color", [1.0, 1.0, 1.0])
@@ -205,24 +224,38 @@ def set_stage(scene: meshcat.Visualizer, city: City) -> None:
     scene["/Grid"].set_property("visible", False)
     scene["/Lights/FillLight/<object>"].set_property("position", [-4.0, -7.0, 9.0])
     scene["/Lights/FillLight/<object>"].set_property("intensity", 0.45)
-    scene.set_transform(translation_matrix(-center))  # the camera circles the origin
+    scene.set_transform(translation_matrix(-nearby(city, center)))  # the camera circles the origin
     camera = scene["/Cameras/default/rotated/<object>"]
     camera.set_property("fov", FIELD_OF_VIEW_DEG)
     camera.set_property("near", reach / 100)
     camera.set_property("far", 20 * reach)
     camera.set_property("position", [0.48 * reach, 0.86 * reach, 1.18 * reach])  # east, up, south
-    corners = np.array([(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])])
-    ground = np.column_stack([corners, np.full(4, low[2] - 0.002 * reach)])
-    scene["ground"].set_object(mesh(ground[[[0, 1, 2], [0, 2, 3]]]), g.MeshBasicMaterial(color=0xE9E9E4))
-    spacing = grid_spacing(city)
+    if city.ground is None:
+        corners = np.array([(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])])
+        ground = nearby(city, np.column_stack([corners, np.full(4, low[2] - 0.002 * reach)]))
+        scene["ground"].set_object(mesh(ground[[[0, 1, 2], [0, 2, 3]]]), g.MeshBasicMaterial(color=0xE9E9E4))
+    elif not painted:
+        lattice = nearby(city, plot.ground_lattice(city))
+        vertices = np.round(256 * lattice.reshape(-1, 3)) / 256  # short numbers make small pages
+        land = g.TriangularMeshGeometry(vertices.astype(np.float32), plot.lattice_triangles(lattice.shape[:2]))
+        scene["ground"].set_object(land, g.MeshLambertMaterial(color=as_number(plot.LAND_COLOR), side=2))
+    draw_lines(scene["grid"], nearby(city, grid_lines(city, 0.002 * reach)), 0xB8B8B0)
+
+
+def grid_lines(city: City, lift: float) -> np.ndarray:
+    """Ends (2L, 3) [m] of a grid's lines: on the bottom of the map, or `lift` above its ground, which they follow."""
+    (low, high), spacing = city.bounds, grid_spacing(city)
     lines = []
     for axis, other in ((0, 1), (1, 0)):
+        count = 2 if city.ground is None else min(city.shape[other], plot.MOST_QUADS) + 1
         for value in np.arange(np.ceil(low[axis] / spacing) * spacing, high[axis] + 1e-9, spacing):
-            ends = np.full((2, 3), low[2])
-            ends[:, axis] = value
-            ends[:, other] = low[other], high[other]
-            lines.append(ends)
-    draw_lines(scene["grid"], np.concatenate(lines), 0xB8B8B0)
+            points = np.full((count, 3), low[2])
+            points[:, axis] = value
+            points[:, other] = np.linspace(low[other], high[other], count)
+            if city.ground is not None:
+                points[:, 2] = plot.ground_below(city, points) + lift
+            lines.append(np.repeat(points, 2, axis=0)[1:-1])
+    return np.concatenate(lines)
 
 
 def grid_spacing(city: City) -> float:
@@ -235,7 +268,7 @@ def grid_spacing(city: City) -> float:
 def draw_city(scene: meshcat.Visualizer, city: City) -> None:
     """All buildings as one mesh with their colours, and their edges as lines."""
     if not city.buildings:
-        scene["voxels"].set_object(mesh(plot.voxel_surface(city)), g.MeshLambertMaterial(color=0xB0C4DE))
+        scene["voxels"].set_object(mesh(nearby(city, plot.voxel_surface(city))), g.MeshLambertMaterial(color=0xB0C4DE))
         return
     surfaces = [building.triangles() for building in city.buildings]
     colors = [
@@ -243,9 +276,20 @@ def draw_city(scene: meshcat.Visualizer, city: City) -> None:
         for building, triangles in zip(city.buildings, surfaces, strict=True)
     ]
     scene["buildings"].set_object(
-        mesh(np.concatenate(surfaces), np.concatenate(colors)), g.MeshLambertMaterial(vertexColors=True)
+        mesh(nearby(city, np.concatenate(surfaces)), np.concatenate(colors)), g.MeshLambertMaterial(vertexColors=True)
     )
-    draw_lines(scene["edges"], np.concatenate([building.edges() for building in city.buildings]), 0x555555)
+    edges = np.concatenate([building.edges() for building in city.buildings])
+    draw_lines(scene["edges"], nearby(city, edges), 0x555555)
+
+
+def draw_zones(scene: meshcat.Visualizer, city: City) -> None:
+    """All no-fly zones as one mesh that one can look through, and their edges as lines."""
+    surface, edges = plot.zone_surface(city)
+    if len(surface):
+        color = as_number(plot.ZONE_COLOR)
+        glass = g.MeshLambertMaterial(color=color, transparent=True, opacity=0.28, side=2, depthWrite=False)
+        scene["walls"].set_object(mesh(nearby(city, surface)), glass)
+        draw_lines(scene["edges"], nearby(city, edges), color)
 
 
 def draw_risk(scene: meshcat.Visualizer, risk_map: RiskMap, slice_height: float | None) -> None:
@@ -253,14 +297,15 @@ def draw_risk(scene: meshcat.Visualizer, risk_map: RiskMap, slice_height: float 
     city = risk_map.city
     norm = plot.risk_norm(risk_map)
 
-    def paint(name: str, values: np.ndarray, shown: np.ndarray, height: float, opacity: float) -> None:
+    def paint(name: str, values: np.ndarray, shown: np.ndarray, height: npt.ArrayLike, opacity: float) -> None:
         triangles = plot.layer_triangles(city, height)[shown.ravel()].reshape(-1, 3, 3)
         colors = np.repeat(plot.SEQUENTIAL(norm(values[shown]))[:, :3], 6, axis=0)
         material = g.MeshBasicMaterial(vertexColors=True, transparent=opacity < 1, opacity=opacity, side=2)
-        scene[name].set_object(mesh(triangles, colors), material)
+        scene[name].set_object(mesh(nearby(city, triangles), colors), material)
 
     everywhere = np.ones(city.shape[:2], dtype=bool)
-    paint("ground", plot.ground_risk(risk_map), everywhere, city.origin[2] + 0.01 * city.cell, 1.0)
+    below = city.origin[2] if city.ground is None else plot.ground_lattice(city, max(city.shape))[..., 2]
+    paint("ground", plot.ground_risk(risk_map), everywhere, below + 0.01 * city.cell, 1.0)
     if slice_height is not None:
         k = plot.level_of(city, slice_height)
         paint("slice", risk_map.rate[:, :, k], risk_map.flyable[:, :, k], slice_height, 0.6)
@@ -275,9 +320,11 @@ def draw_route(scene: meshcat.Visualizer, city: City, route: Route, color: str, 
 def draw_way(scene: meshcat.Visualizer, city: City, points: np.ndarray, color: str, *, thickness: float = 1.0) -> None:
     """A tube along points, and a ball at the first of them."""
     radius, material = tube_radius(city), g.MeshLambertMaterial(color=as_number(color))
-    scene["tube"].set_object(mesh(tube(points, thickness * radius)), material)
+    surface = tube(nearby(city, points), thickness * radius)
+    if len(surface):  # a UAV that stays where it is leaves none
+        scene["tube"].set_object(mesh(surface), material)
     scene["start"].set_object(g.Sphere(2.5 * radius), material)
-    scene["start"].set_transform(translation_matrix(points[0]))
+    scene["start"].set_transform(translation_matrix(nearby(city, points[0])))
 
 
 def draw_goal(scene: meshcat.Visualizer, city: City, goal: np.ndarray, color: str) -> None:
@@ -286,7 +333,7 @@ def draw_goal(scene: meshcat.Visualizer, city: City, goal: np.ndarray, color: st
     cone = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 6 * radius]])
     shape = mesh(tube(cone, 3 * radius, end_radius=0.0))
     scene.set_object(shape, g.MeshLambertMaterial(color=as_number(color)))
-    scene.set_transform(translation_matrix(goal - [0.0, 0.0, 3 * radius]))
+    scene.set_transform(translation_matrix(nearby(city, goal) - [0.0, 0.0, 3 * radius]))
 
 
 def tube_radius(city: City) -> float:
@@ -315,7 +362,7 @@ def animate_route(
     """A UAV that flies a route at constant speed, again and again."""
     draw_uav(scene, city, safe_distance)
     share = route.distance / max(route.length, 1e-9)
-    move(scene, route.points, share * FLIGHT_SECONDS, animation)
+    move(scene, nearby(city, route.points), share * FLIGHT_SECONDS, animation)
 
 
 def animate_flight(
@@ -329,14 +376,15 @@ def animate_flight(
 ) -> None:
     """The track of a flight and a UAV on it, by a clock that shows `longest` seconds; a crash is a red X."""
     time, points = plot.track(flight)
+    places = nearby(city, np.vstack([points, points[-1]]))
     clock = time / longest * FLIGHT_SECONDS
     draw_way(scene, city, points, color)
     draw_uav(scene["uav"], city, safe_distance)
-    move(scene["uav"], np.vstack([points, points[-1]]), np.append(clock, LAST_FRAME / FRAMES_PER_SECOND), animation)
+    move(scene["uav"], places, np.append(clock, LAST_FRAME / FRAMES_PER_SECOND), animation)
     if flight.outcome == "arrived":
         draw_goal(scene["goal"], city, points[-1], color)
     if flight.outcome == "crashed":
-        arms = plot.cross(points[-1], 7 * tube_radius(city))
+        arms = plot.cross(places[-1], 7 * tube_radius(city))
         beams = np.concatenate([tube(arm, 1.6 * tube_radius(city)) for arm in arms])
         through_walls = {"depthTest": False}  # a crash behind a building is to be seen, too
         red = g.MeshBasicMaterial(color=as_number(plot.CRASH_COLOR), transparent=True, **through_walls)
@@ -364,7 +412,7 @@ def animate_expansion(scene: meshcat.Visualizer, city: City, order: np.ndarray, 
     shown = order[:: -(-len(order) // MOST_POINTS)]
     batches = np.array_split(shown, min(EXPANSION_BATCHES, len(shown)))
     for number, nodes in enumerate(batches):
-        points = city.center_of(city.index_of(nodes)).T.astype(np.float32)
+        points = nearby(city, city.center_of(city.index_of(nodes))).T.astype(np.float32)
         color = np.array(to_rgb(plot.sequential_color(number / max(len(batches) - 1, 1))), dtype=np.float32)
         name = f"batch{number}"
         scene[name].set_object(g.PointCloud(points, np.tile(color, (len(nodes), 1)).T, size=0.9 * city.cell))
@@ -401,7 +449,7 @@ def tube(points: np.ndarray, radius: float, *, end_radius: float | None = None, 
         triangles.append(np.stack([low[:-1], high[1:], high[:-1]], axis=1))
         triangles.append(np.stack([low[1:], low[:-1], np.broadcast_to(start, (sides, 3))], axis=1))
         triangles.append(np.stack([high[:-1], high[1:], np.broadcast_to(end, (sides, 3))], axis=1))
-    return np.concatenate(triangles)
+    return np.concatenate(triangles) if triangles else np.empty((0, 3, 3))
 
 
 def quadrotor(size: float) -> np.ndarray:

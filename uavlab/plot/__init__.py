@@ -20,7 +20,9 @@ from uavlab.plot.flights import (
 from uavlab.plot.ground import (
     CUT_COLOR,
     LAND_COLOR,
+    MOST_QUADS,
     ZONE_COLOR,
+    ground_below,
     ground_lattice,
     ground_words,
     height_label,
@@ -28,6 +30,7 @@ from uavlab.plot.ground import (
     lattice_triangles,
     zone_label,
     zone_surface,
+    zones_at,
 )
 from uavlab.plot.maps import RISK_LABEL, expansions, field, ground_risk, layers, plan, risk, risk_norm, section
 from uavlab.plot.stills import layer_triangles, still, subdivided, voxel_surface
@@ -52,6 +55,7 @@ __all__ = [
     "CUT_COLOR",
     "DPI",
     "LAND_COLOR",
+    "MOST_QUADS",
     "RISK_LABEL",
     "ROUTE_COLORS",
     "SEQUENTIAL",
@@ -68,6 +72,7 @@ __all__ = [
     "field",
     "finished",
     "front",
+    "ground_below",
     "ground_lattice",
     "ground_risk",
     "ground_words",
@@ -96,4 +101,5 @@ __all__ = [
     "voxel_surface",
     "zone_label",
     "zone_surface",
+    "zones_at",
 ]

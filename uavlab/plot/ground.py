@@ -164,7 +164,7 @@ def zone_polygons(city: City, zone: NoFlyZone) -> list[shapely.Polygon]:
     return [part for part in shapely.get_parts(within) if isinstance(part, shapely.Polygon) and not part.is_empty]
 
 
-def zones_at(city: City, height: float | None) -> list[NoFlyZone]:
+def zones_at(city: City, height: float | None = None) -> list[NoFlyZone]:
     """The zones on the map that reach a height [m]; all of them without one."""
     shown = []
     for zone in city.no_fly:

@@ -10,7 +10,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+from scipy.ndimage import maximum_filter
 
 from uavlab.city import City
 from uavlab.flight import Flight
@@ -18,6 +19,7 @@ from uavlab.plot.flights import cross, label_of_flight, named_flights, track
 from uavlab.plot.ground import (
     LAND_COLOR,
     ZONE_COLOR,
+    built_columns,
     ground_lattice,
     lattice_triangles,
     zone_label,
@@ -29,7 +31,7 @@ from uavlab.plot.style import CRASH_COLOR, DPI, SEQUENTIAL, check_drawn, finishe
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 
-SUN = np.array([-0.45, -0.7, 0.55])
+SUN = np.array([-0.45, -0.7, 0.55]) / np.linalg.norm([-0.45, -0.7, 0.55])
 """Where the light comes from in a still."""
 LAND_QUADS = 70
 """Of terrain along each side of a still."""
@@ -65,16 +67,21 @@ def still(
     for triangles, color in city_surface(city):
         pieces = subdivided(triangles, longest / (14 if city.ground is None else 40))  # small ones meet a slope evenly
         polygons.append(pieces)
-        colors.append(lit(pieces, color))
+        colors.append((0.75 + 0.25 * sunlight(pieces))[:, None] * to_rgb(color))
     if city.ground is not None and risk is None:
-        lattice = ground_lattice(city, LAND_QUADS)
-        polygons.append(lattice.reshape(-1, 3)[lattice_triangles(lattice.shape[:2])])
-        colors.append(lit(polygons[-1], LAND_COLOR))
-    zones = zones_at(city, None)
+        land, below = land_triangles(city)
+        tones = np.clip(1.0 + 0.6 * (sunlight(land) - SUN[2]), 0.0, 1.0)[:, None] * to_rgb(LAND_COLOR)
+        polygons.append(land[~below])
+        colors.append(tones[~below])
+        if below.any():
+            axes.add_collection3d(
+                Poly3DCollection(land[below], facecolors=tones[below], edgecolors=tones[below], lw=0.3, zorder=0)
+            )
+    zones = zones_at(city)
     if zones:
-        pane = subdivided(zone_surface(city)[0], longest / 14)
-        glass = {"facecolors": ZONE_COLOR, "alpha": 0.22, "edgecolors": "none"}
-        axes.add_collection3d(Poly3DCollection(pane, zorder=8, **glass))
+        walls, edges = zone_surface(city)
+        axes.add_collection3d(Poly3DCollection(walls, zorder=8, facecolors=ZONE_COLOR, alpha=0.2, edgecolors="none"))
+        axes.add_collection3d(Line3DCollection(edges.reshape(-1, 2, 3), zorder=8, colors=ZONE_COLOR, linewidths=0.8))
         axes.plot([], [], [], color=ZONE_COLOR, linewidth=6, alpha=0.4, label=plain(zone_label(zones)))
     named = named_flights(flights)
     ways = [(label_of(route), route, 0.4 if named else 1.0) for route in routes]
@@ -118,12 +125,21 @@ def still(
     return finished(figure)
 
 
-def lit(triangles: np.ndarray, color: str) -> np.ndarray:
-    """The colour of each triangle (T, 3, 3) in the light of the sun, (T, 3)."""
+def land_triangles(city: City) -> tuple[np.ndarray, np.ndarray]:
+    """The ground as triangles (T, 3, 3) [m], and which of them reach below a building, where it hides them."""
+    lattice = ground_lattice(city, LAND_QUADS)
+    triangles = lattice.reshape(-1, 3)[lattice_triangles(lattice.shape[:2])]
+    reach = -(-max(city.shape[:2]) // LAND_QUADS)
+    built = maximum_filter(built_columns(city), 2 * reach + 1)
+    i, j, _ = city.cell_of(triangles.mean(axis=1)).T
+    return triangles, built[i, j]
+
+
+def sunlight(triangles: np.ndarray) -> np.ndarray:
+    """How straight the sun shines on triangles (T, 3, 3), (T,): the cosine of its angle with their normals."""
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True) + 1e-12
-    light = 0.75 + 0.25 * (normals @ (SUN / np.linalg.norm(SUN)))
-    return light[:, None] * np.array(to_rgb(color))
+    return normals @ SUN
 
 
 def layer_triangles(city: City, height: npt.ArrayLike) -> np.ndarray:
