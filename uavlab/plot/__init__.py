@@ -17,6 +17,18 @@ from uavlab.plot.flights import (
     track,
     tracks,
 )
+from uavlab.plot.ground import (
+    CUT_COLOR,
+    LAND_COLOR,
+    ZONE_COLOR,
+    ground_lattice,
+    ground_words,
+    height_label,
+    height_words,
+    lattice_triangles,
+    zone_label,
+    zone_surface,
+)
 from uavlab.plot.maps import RISK_LABEL, expansions, field, ground_risk, layers, plan, risk, risk_norm, section
 from uavlab.plot.stills import layer_triangles, still, subdivided, voxel_surface
 from uavlab.plot.style import (
@@ -37,10 +49,13 @@ from uavlab.plot.style import (
 __all__ = [
     "CONVERGENCE_STYLES",
     "CRASH_COLOR",
+    "CUT_COLOR",
     "DPI",
+    "LAND_COLOR",
     "RISK_LABEL",
     "ROUTE_COLORS",
     "SEQUENTIAL",
+    "ZONE_COLOR",
     "bars",
     "check_drawn",
     "convergence",
@@ -53,9 +68,14 @@ __all__ = [
     "field",
     "finished",
     "front",
+    "ground_lattice",
     "ground_risk",
+    "ground_words",
+    "height_label",
+    "height_words",
     "in_flight",
     "label_of_flight",
+    "lattice_triangles",
     "layer_triangles",
     "layers",
     "level_of",
@@ -74,4 +94,6 @@ __all__ = [
     "track",
     "tracks",
     "voxel_surface",
+    "zone_label",
+    "zone_surface",
 ]

@@ -5,12 +5,14 @@ from itertools import cycle
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from uavlab import checks
 from uavlab.city import City
 from uavlab.planners.comparison import Comparison
+from uavlab.plot.ground import CUT_COLOR, datum_of, ground_below, height_label
 from uavlab.plot.style import (
     CONVERGENCE_STYLES,
     DPI,
@@ -19,6 +21,7 @@ from uavlab.plot.style import (
     finished,
     label_of,
     new_figure,
+    plain,
     route_colors,
 )
 from uavlab.route import Route
@@ -103,7 +106,7 @@ def convergence(
         low, high = np.quantile(gaps, [0.25, 0.75], axis=0, method="nearest")
         shown = slice(until)
         axes.plot(effort[shown], finite_or_nan(np.median(gaps, axis=0))[shown], color=color, linestyle=style,
-                  linewidth=2, label=name)  # fmt: skip
+                  linewidth=2, label=plain(name))  # fmt: skip
         axes.fill_between(effort[shown], finite_or_nan(low)[shown], finite_or_nan(high)[shown], color=color, alpha=0.13,
                           linewidth=0)  # fmt: skip
     if not any(np.isfinite(line.get_ydata()).any() for line in axes.lines):
@@ -131,20 +134,30 @@ def finite_or_nan(values: np.ndarray) -> np.ndarray:
 
 
 def profile(city: City, *routes: Route, safe_distance: float | None = None) -> Figure:
-    """Height and clearance along routes, with the distance to keep as a dashed line if it is given [m]."""
+    """Height and clearance along routes, with the distance to keep as a dashed line if it is given [m].
+
+    On level ground heights are counted from it. Else they are z of the map, the ground below the first route is a
+    brown area, and thin lines show the tops of the occupied voxels below each route.
+    """
     check_drawn(city, routes)
+    if safe_distance is not None:
+        checks.positive_number("safe_distance", safe_distance)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7.2, 4.6), dpi=DPI, layout="constrained")
-    for route, color in zip(routes, route_colors(len(routes)), strict=True):
-        if len(route.points) < 2:
-            continue
-        above.plot(route.distance, route.points[:, 2] - city.origin[2], color=color, label=label_of(route))
+    zero = datum_of(city) or 0.0
+    drawn = [(route, color) for route, color in zip(routes, route_colors(len(routes)), strict=True)
+             if len(route.points) > 1]  # fmt: skip
+    for route, color in drawn:
+        above.plot(route.distance, route.points[:, 2] - zero, color=color, label=label_of(route))
         distance, clearance = route.clearance_profile(city)
         below.plot(distance, clearance, color=color)
     if safe_distance is not None:
         below.axhline(safe_distance, color="0.3", linestyle="--", linewidth=1)
         below.annotate(f"to keep: {safe_distance:g} m", (0.995, safe_distance), xycoords=("axes fraction", "data"),
                        ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
-    above.set_ylabel("height [m]")
+    lowest = 0.0
+    if drawn and city.ground is not None:
+        lowest = draw_below(above, city, drawn, zero)
+    above.set_ylabel(height_label(city))
     below.set_ylabel("clearance [m]")
     below.set_xlabel("distance flown [m]")
     if above.lines:
@@ -152,14 +165,36 @@ def profile(city: City, *routes: Route, safe_distance: float | None = None) -> F
     for axes in (above, below):
         axes.grid(alpha=0.3)
         axes.margins(x=0.01)
-        axes.set_ylim(0, 1.05 * axes.get_ylim()[1])
+        axes.set_ylim(lowest if axes is above else 0.0, 1.05 * axes.get_ylim()[1])
     return finished(figure)
+
+
+def draw_below(axes: Axes, city: City, drawn: Sequence[tuple[Route, str]], zero: float) -> float:
+    """Ground below the first route and obstacles below all of them, above height `zero`; returns the lowest height."""
+    ways = [(route.resample(city.cell / 2), color) for route, color in drawn]
+    grounds = [ground_below(city, way.points) - zero for way, _ in ways]
+    lowest = min(0.0, *(float(ground.min()) for ground in grounds))
+    name = "ground" if len(ways) == 1 else f"ground below {plain(drawn[0][0].planner)}"
+    axes.fill_between(ways[0][0].distance, lowest, grounds[0], color=CUT_COLOR, linewidth=0, alpha=0.75, label=name)
+    for (way, color), ground in zip(ways, grounds, strict=True):
+        tops = np.maximum(tops_below(city, way.points) - zero, ground)
+        axes.plot(way.distance, tops, color=color, linewidth=0.8, linestyle=":")
+    axes.plot([], [], color="0.3", linewidth=0.8, linestyle=":", label="occupied voxels below")
+    return lowest
+
+
+def tops_below(city: City, points: np.ndarray) -> np.ndarray:
+    """Height z of the highest occupied voxel at or below each of the points (N, 3), (N,) [m]."""
+    i, j, k = np.clip(city.cell_of(points), 0, np.array(city.shape) - 1).T
+    below = city.occupied[i, j] & (np.arange(city.shape[2]) <= k[:, None])
+    layers = city.shape[2] - below[:, ::-1].argmax(axis=1)
+    return city.origin[2] + city.cell * np.where(below.any(axis=1), layers, 0)
 
 
 def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
     """Named values as horizontal bars, each with its number; `label` names the quantity and its unit."""
     figure, axes = plt.subplots(figsize=(6.4, 0.5 * len(values) + 1.1), dpi=DPI, layout="constrained")
-    drawn = axes.barh(list(values), list(values.values()), color=ROUTE_COLORS[1])
+    drawn = axes.barh([plain(name) for name in values], list(values.values()), color=ROUTE_COLORS[1])
     axes.bar_label(drawn, [f"{v:,.0f}" if abs(v) >= 100 else f"{v:.3g}" for v in values.values()], padding=3)
     axes.invert_yaxis()
     axes.xaxis.set_major_formatter("{x:,g}")

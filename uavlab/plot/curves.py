@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from uavlab import checks
 from uavlab.city import City
 from uavlab.plot.charts import finite_or_nan
-from uavlab.plot.style import DPI, ROUTE_COLORS, check_drawn, draw_map, finished, label_of, level_of, route_colors
+from uavlab.plot.ground import draw_cut
+from uavlab.plot.style import DPI, ROUTE_COLORS, check_drawn, draw_map, finished, label_of, level_of, plain, route_colors
 from uavlab.route import Route
 from uavlab.spline import Curve
 from uavlab.spline.curve import BANK, CONTACT
@@ -44,7 +45,7 @@ def curve_profile(
         checks.positive_number(name, value)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8.4, 5.4), dpi=DPI, layout="constrained")
     for curve, color in zip(curves, route_colors(len(curves)), strict=True):
-        above.plot(curve.distance, finite_or_nan(curve.curvature), color=color, label=curve.planner)
+        above.plot(curve.distance, finite_or_nan(curve.curvature), color=color, label=plain(curve.planner))
         above.plot(curve.distance, finite_or_nan(curve.level_curvature), ":", color=color, linewidth=1.2)
         below.plot(curve.distance, np.degrees(curve.pitch), color=color)
     above.plot([], ":", color="0.3", linewidth=1.2, label="level part of it")
@@ -70,7 +71,7 @@ def curve_profile(
 def corner(
     city: City, *curves: Curve, center: npt.ArrayLike, reach: float, diameter: float, route: Route | None = None
 ) -> Figure:
-    """Curves about a point from above, as wide as the body, and with their control points; voxels at its height black.
+    """Curves about a point from above, as wide as the body, and with their control points; obstacles at its height dark.
 
     Where the body touches an obstacle the curve is drawn in thick orange.
 
@@ -98,11 +99,13 @@ def corner(
     x, y, z = checks.three("center", center)
     for name, value in (("reach", reach), ("diameter", diameter)):
         checks.positive_number(name, value)
-    layer = np.where(city.occupied[:, :, level_of(city, z)], 1.0, np.nan)
+    k = level_of(city, z)
+    layer = np.where(city.occupied[:, :, k], 1.0, np.nan)
     figure, panels = plt.subplots(1, len(curves), figsize=(0.8 + 3.7 * len(curves), 4.4), dpi=DPI, squeeze=False,
                                   sharey=True, layout="constrained")  # fmt: skip
     for axes, curve in zip(panels[0], curves, strict=True):
         draw_map(axes, city, layer, "Greys", vmin=0.0, vmax=1.6)
+        draw_cut(axes, city, k)
         if route is not None:
             axes.plot(*route.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2, label=label_of(route))
         axes.add_collection(PolyCollection(list(swept(curve, diameter)), facecolor=ROUTE_COLORS[1], alpha=0.35))
@@ -113,7 +116,7 @@ def corner(
         axes.plot(*curve.control[:, :2].T, "o", color=ROUTE_COLORS[2], markersize=4, label="control points")
         axes.set(xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
         clear, sharpest = curve.clearance(city), curve.curvature.max()
-        axes.set_title(f"{curve.planner}: {clear:.2f} m clear, κ ≤ {sharpest:.2f} 1/m", fontsize=9)
+        axes.set_title(f"{plain(curve.planner)}: {clear:.2f} m clear, κ ≤ {sharpest:.2f} 1/m", fontsize=9)
     for axes in panels[0, 1:]:
         axes.set_ylabel("")
     handles, names = panels[0, 0].get_legend_handles_labels()

@@ -14,6 +14,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.flight import Flight, Rate
 from uavlab.offsets import SafetyDomain
+from uavlab.plot.ground import built_columns
 from uavlab.plot.style import (
     CONVERGENCE_STYLES,
     CRASH_COLOR,
@@ -25,6 +26,7 @@ from uavlab.plot.style import (
     draw_map,
     finished,
     new_figure,
+    plain,
 )
 from uavlab.route import Route
 
@@ -67,20 +69,20 @@ def tracks(
     height = 3.1 * (north - south) / (east - west) + 1.2
     figure, panels = plt.subplots(1, len(named), figsize=(3.1 * len(named) + 0.5, height), dpi=DPI, squeeze=False,
                                   sharey=True, layout="constrained")  # fmt: skip
-    built = np.where(city.occupied.any(axis=2), 1.0, np.nan)
+    built = np.where(built_columns(city), 1.0, np.nan)
     for axes, (name, flown) in zip(panels[0], named.items(), strict=True):
         draw_map(axes, city, built, "Greys", vmin=0.0, vmax=3.0)
         for flight in flown:
             axes.plot(*track(flight)[1][:, :2].T, color=ROUTE_COLORS[1], linewidth=0.8, alpha=0.6)
         ends = np.array([flight.position[-1, :2] for flight in flown if flight.outcome == "crashed"]).reshape(-1, 2)
-        title = f"{name}: {len(ends)} of {len(flown)} crash" if flown else name
+        title = f"{plain(name)}: {len(ends)} of {len(flown)} crash" if flown else plain(name)
         if name in planned:
             way = planned[name]
             axes.plot(*way.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2)
             axes.plot(*way.points[:1, :2].T, "o", color=ROUTE_COLORS[2], markersize=7)
             mark = "^" if way.reached else "s"
             axes.plot(*way.points[-1:, :2].T, mark, color=ROUTE_COLORS[2], markersize=7)
-            title = title if way.reached else f"{name}: doesn't arrive"
+            title = title if way.reached else f"{plain(name)}: doesn't arrive"
         axes.plot(*ends.T, "x", color=CRASH_COLOR, markersize=8, markeredgewidth=2, zorder=5)
         axes.set(xlim=(west, east), ylim=(south, north))
         axes.set_title(title, fontsize=10)
@@ -122,7 +124,7 @@ def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01)
     figure, axes = new_figure(8.6, 0.62 * len(rates) * max(len(planners) / 4, 0.7) + 1.5)
     apart = 0.8 / len(planners)
     for number, (name, color, marker) in enumerate(zip(planners, ROUTE_COLORS, "osD^vP", strict=False)):
-        axes.plot([], [], marker, color=color, label=name)
+        axes.plot([], [], marker, color=color, label=plain(name))
         for row, by_planner in enumerate(rates.values()):
             if name not in by_planner:
                 continue
@@ -135,7 +137,7 @@ def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01)
                 axes.plot(rate.high, y, "|", color=color, markersize=8, markeredgewidth=2)
     axes.set(xscale="log", xlim=(least, 1300), ylim=(len(rates) - 0.45, -0.55),
              xlabel="crashes per 1 000 flights, with 95 % intervals (arrow: none seen)")  # fmt: skip
-    axes.set_yticks(range(len(rates)), list(rates))
+    axes.set_yticks(range(len(rates)), [plain(case) for case in rates])
     axes.xaxis.set_major_formatter("{x:,g}")
     axes.grid(axis="x", alpha=0.3)
     for border in range(1, len(rates)):
@@ -167,14 +169,14 @@ def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
     for axes, (column, label) in zip(panels, (*quantities, ("thrust", "thrust [N]")), strict=True):
         for (name, flight), (color, style) in zip(flown.items(), CONVERGENCE_STYLES, strict=False):
             values = flight.column(column)
-            axes.plot(flight.time, values, color=color, linestyle=style, linewidth=1.2, label=name)
+            axes.plot(flight.time, values, color=color, linestyle=style, linewidth=1.2, label=plain(name))
             if flight.outcome == "crashed":
                 axes.plot(flight.time[-1], values[-1], "x", color=CRASH_COLOR, markersize=9, markeredgewidth=2.5)
         axes.set_ylabel(label)
         axes.grid(alpha=0.3)
     for name, limit in limits.items():
         panels[2].axhline(limit, color="0.4", linewidth=1, linestyle=":")
-        panels[2].annotate(name, (0.995, limit), (0, 1), xycoords=("axes fraction", "data"),
+        panels[2].annotate(plain(name), (0.995, limit), (0, 1), xycoords=("axes fraction", "data"),
                            textcoords="offset points", ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
     panels[2].margins(y=0.12)
     panels[0].axhline(0.0, color="0.4", linewidth=1)
@@ -212,7 +214,7 @@ def safety_domain(samples: npt.ArrayLike, **domains: SafetyDomain) -> Figure:
     axes.set_facecolor("0.93")
     styles = zip((ROUTE_COLORS[0], "#FFFFFF", ROUTE_COLORS[3]), ("-", "--", "-."), strict=True)
     for (name, domain), (color, style) in zip(domains.items(), styles, strict=False):
-        label = f"{name.replace('_', ' ')}: {domain.in_ellipse:.2%} inside"
+        label = f"{plain(name.replace('_', ' '))}: {domain.in_ellipse:.2%} inside"
         axes.plot(*domain.ellipse.T, color="black", linewidth=3.6)
         axes.plot(*domain.ellipse.T, style, color=color, linewidth=2.2, label=label)
     axes.set(xlabel="offset across the route, left is positive [m]", ylabel="offset up [m]", aspect="equal")

@@ -12,6 +12,15 @@ from matplotlib.ticker import MaxNLocator
 from uavlab import checks
 from uavlab.city import City
 from uavlab.planners.potential_field import potential_forces
+from uavlab.plot.ground import (
+    LAND_COLOR,
+    built_columns,
+    draw_contours,
+    draw_cut,
+    draw_zones,
+    hatch,
+    title_of,
+)
 from uavlab.plot.style import (
     DPI,
     ROUTE_COLORS,
@@ -23,13 +32,14 @@ from uavlab.plot.style import (
     finished,
     level_of,
     new_figure,
+    plain,
 )
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 
 
 def plan(city: City, *routes: Route) -> Figure:
-    """The city from above, darker where it is higher, with routes.
+    """The city from above, darker where it is higher, with routes, heights of the ground and no-fly zones.
 
     Parameters
     ----------
@@ -40,10 +50,15 @@ def plan(city: City, *routes: Route) -> Figure:
     check_drawn(city, routes)
     figure, axes = new_figure(6.4, 5.4)
     tops = np.where(city.occupied, (np.arange(city.shape[2]) + 1) * city.cell, 0).max(axis=2)
+    if city.ground is not None:
+        tops = np.where(built_columns(city), np.maximum(city.origin[2] + tops - city.ground, 0.0), 0.0)
+        axes.set_facecolor(LAND_COLOR)
     image = draw_map(axes, city, np.where(tops > 0, tops, np.nan), "Greys", vmin=0.0, vmax=1.3 * max(tops.max(), 1.0))
     add_color_bar(figure, axes, image, "top of the buildings above the ground [m]").ax.set_ylim(0, max(tops.max(), 1.0))
+    draw_contours(axes, city)
+    draw_zones(axes, city)
     draw_routes(axes, routes)
-    axes.set_title(city.name)
+    axes.set_title(plain(city.name))
     return finished(figure)
 
 
@@ -58,13 +73,15 @@ def section(
     label: str = "clearance [m]",
     norm: Normalize | None = None,
 ) -> Figure:
-    """A horizontal section: buildings black, and values of the voxels at this height in colour.
+    """A horizontal section: buildings black, ground brown, and values of the voxels at this height in colour.
+
+    No-fly zones that reach the height are hatched.
 
     Parameters
     ----------
     city : City
     height : float
-        Where to cut [m].
+        Where to cut, z [m].
     values : (nx, ny, nz) array, optional
         What to colour; the clearance by default.
     routes : Route
@@ -86,8 +103,10 @@ def section(
     image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL, norm=norm)
     add_color_bar(figure, axes, image, label)
     axes.set_facecolor("black")
+    draw_cut(axes, city, k)
+    draw_zones(axes, city, height)
     draw_routes(axes, routes)
-    axes.set_title(f"{city.name}, {height:g} m above the ground (buildings black)")
+    axes.set_title(title_of(city, height, "buildings black"))
     return finished(figure)
 
 
@@ -106,7 +125,7 @@ def field(
     ----------
     city : City
     height : float
-        Where to cut [m].
+        Where to cut, z [m].
     goal : (3,) array
         What attracts [m].
     routes : Route
@@ -137,6 +156,7 @@ def field(
 
     figure, axes = new_figure(6.4, 5.4)
     draw_map(axes, city, np.where(city.occupied[:, :, k], 1.0, np.nan), "gray_r", vmin=0, vmax=1)
+    draw_cut(axes, city, k)
     points, _, potential = sampled(max(east - west, north - south) / 200)
     levels = MaxNLocator(20).tick_values(np.nanmin(potential), np.nanquantile(potential, 0.93))  # walls rise out of it
     image = axes.contourf(*points[..., :2].T, potential.T, levels, cmap=SEQUENTIAL, extend="max")
@@ -147,9 +167,10 @@ def field(
         direction = force / np.linalg.norm(force, axis=-1, keepdims=True)
     axes.quiver(*points[..., :2].T, *direction[..., :2].T, pivot="mid", angles="xy", scale_units="xy",
                 scale=1.2 / spacing, width=0.005, edgecolor="white", linewidth=0.5)  # fmt: skip
+    draw_zones(axes, city, height)
     draw_routes(axes, routes)
     axes.set(xlim=(west, east), ylim=(south, north))
-    axes.set_title(f"{city.name}, {height:g} m above the ground (buildings black)")
+    axes.set_title(title_of(city, height, "buildings black"))
     return finished(figure)
 
 
@@ -162,7 +183,7 @@ def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
     ----------
     risk_map : RiskMap
     height : float
-        Where to cut [m].
+        Where to cut, z [m].
     routes : Route
         Seen from above.
 
@@ -175,13 +196,12 @@ def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
     city = risk_map.city
     k = level_of(city, height)
     figure = section(city, height, risk_map.rate, *routes, label=RISK_LABEL, norm=risk_norm(risk_map))
-    too_low = ~(risk_map.flyable | city.occupied)[:, :, k]
+    closed = city.in_no_fly if city.no_fly else city.occupied
+    too_low = ~(risk_map.flyable | city.occupied | closed)[:, :, k]
     if too_low.any():
         axes = figure.axes[0]
-        axes.set_title(f"{city.name}, {height:g} m above the ground (too low hatched)")
-        axes.contourf(
-            city.coordinates(0), city.coordinates(1), too_low.T, levels=[0.5, 1.5], colors="none", hatches=["////"]
-        )
+        axes.set_title(title_of(city, height, "too low hatched"))
+        hatch(axes, city, too_low, "////")
     return finished(figure)
 
 
@@ -221,7 +241,7 @@ def expansions(city: City, *routes: Route) -> Figure:
     figure, all_axes = plt.subplots(
         1, len(routes), figsize=(3.4 * len(routes) + 1, 3.7), dpi=DPI, squeeze=False, layout="constrained"
     )
-    built = city.occupied.any(axis=2)
+    built = built_columns(city)
     for axes, route in zip(all_axes[0], routes, strict=True):
         order = route.info["order"]
         first = np.full(city.shape[:2], np.inf)
@@ -231,7 +251,8 @@ def expansions(city: City, *routes: Route) -> Figure:
         image = draw_map(axes, city, np.where(np.isfinite(first), first, np.nan), SEQUENTIAL, vmin=0, vmax=1)
         if len(route.points) > 1:
             axes.plot(*route.points[:, :2].T, color=ROUTE_COLORS[0], linewidth=1.5)
-        axes.set_title(f"{route.info.get('heuristic', route.planner)}: {len(order):,} expanded", fontsize=10)
+        name = plain(route.info.get("heuristic", route.planner))
+        axes.set_title(f"{name}: {len(order):,} expanded", fontsize=10)
     figure.colorbar(image, ax=all_axes, label="first looked at, as a share of the search")
     return finished(figure)
 

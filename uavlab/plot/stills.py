@@ -5,6 +5,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -14,13 +15,24 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from uavlab.city import City
 from uavlab.flight import Flight
 from uavlab.plot.flights import cross, label_of_flight, named_flights, track
+from uavlab.plot.ground import (
+    LAND_COLOR,
+    ZONE_COLOR,
+    ground_lattice,
+    lattice_triangles,
+    zone_label,
+    zone_surface,
+    zones_at,
+)
 from uavlab.plot.maps import RISK_LABEL, ground_risk, risk_norm
-from uavlab.plot.style import CRASH_COLOR, DPI, SEQUENTIAL, check_drawn, finished, label_of, route_colors
+from uavlab.plot.style import CRASH_COLOR, DPI, SEQUENTIAL, check_drawn, finished, label_of, plain, route_colors
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 
 SUN = np.array([-0.45, -0.7, 0.55])
 """Where the light comes from in a still."""
+LAND_QUADS = 70
+"""Of terrain along each side of a still."""
 
 
 def still(
@@ -51,15 +63,22 @@ def still(
     longest = float((high - low).max())
     polygons, colors = [], []
     for triangles, color in city_surface(city):
-        pieces = subdivided(triangles, longest / 14)
-        normals = np.cross(pieces[:, 1] - pieces[:, 0], pieces[:, 2] - pieces[:, 0])
-        normals /= np.linalg.norm(normals, axis=1, keepdims=True) + 1e-12
-        light = 0.75 + 0.25 * (normals @ (SUN / np.linalg.norm(SUN)))
+        pieces = subdivided(triangles, longest / (14 if city.ground is None else 40))  # small ones meet a slope evenly
         polygons.append(pieces)
-        colors.append(light[:, None] * np.array(to_rgb(color)))
+        colors.append(lit(pieces, color))
+    if city.ground is not None and risk is None:
+        lattice = ground_lattice(city, LAND_QUADS)
+        polygons.append(lattice.reshape(-1, 3)[lattice_triangles(lattice.shape[:2])])
+        colors.append(lit(polygons[-1], LAND_COLOR))
+    zones = zones_at(city, None)
+    if zones:
+        pane = subdivided(zone_surface(city)[0], longest / 14)
+        glass = {"facecolors": ZONE_COLOR, "alpha": 0.22, "edgecolors": "none"}
+        axes.add_collection3d(Poly3DCollection(pane, zorder=8, **glass))
+        axes.plot([], [], [], color=ZONE_COLOR, linewidth=6, alpha=0.4, label=plain(zone_label(zones)))
     named = named_flights(flights)
     ways = [(label_of(route), route, 0.4 if named else 1.0) for route in routes]
-    ways += [(label_of_flight(name, flight), Route(track(flight)[1]), 1.0) for name, flight in named.items()]
+    ways += [(plain(label_of_flight(name, flight)), Route(track(flight)[1]), 1.0) for name, flight in named.items()]
     for (label, way, thickness), color in zip(ways, route_colors(len(ways)), strict=True):
         axes.plot([], [], [], color=color, linewidth=3 * thickness, label=label)
         if len(way.points) > 1:
@@ -74,8 +93,14 @@ def still(
     if risk is not None:
         norm = risk_norm(risk)
         paint = np.repeat(SEQUENTIAL(norm(ground_risk(risk).ravel())), 2, axis=0)
-        ground = layer_triangles(city, low[2]).reshape(-1, 3, 3)
-        axes.add_collection3d(Poly3DCollection(ground, facecolors=paint, edgecolors=paint, lw=0.3, zorder=0))
+        ground = layer_triangles(city, low[2] if city.ground is None else ground_lattice(city, max(city.shape))[..., 2])
+        if city.ground is None:
+            axes.add_collection3d(
+                Poly3DCollection(ground.reshape(-1, 3, 3), facecolors=paint, edgecolors=paint, lw=0.3, zorder=0)
+            )
+        else:  # a hill hides what is behind it
+            polygons.append(ground.reshape(-1, 3, 3))
+            colors.append(paint[:, :3])
         bar = figure.add_axes((0.08, 0.1, 0.24, 0.025))
         figure.colorbar(ScalarMappable(norm, SEQUENTIAL), cax=bar, orientation="horizontal").set_label(
             RISK_LABEL, fontsize=8
@@ -84,24 +109,36 @@ def still(
         faces = np.concatenate(colors)
         axes.add_collection3d(Poly3DCollection(np.concatenate(polygons), facecolors=faces, edgecolors=faces, lw=0.3))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set(xlabel="x, east [m]", ylabel="y, north [m]", zlabel="z, up [m]", title=city.name)
+    axes.set(xlabel="x, east [m]", ylabel="y, north [m]", zlabel="z, up [m]", title=plain(city.name))
     axes.set_box_aspect(high - low, zoom=0.95)
     axes.zaxis.set_major_locator(MaxNLocator(2 + round(4 * (high - low)[2] / longest)))
     axes.view_init(elevation_deg, azimuth_deg)
-    if ways:
+    if ways or zones:
         axes.legend(loc="upper left", fontsize=8)
     return finished(figure)
 
 
-def layer_triangles(city: City, height: float) -> np.ndarray:
-    """Two triangles for each column of voxels, (nx·ny, 2, 3, 3) [m], at a height."""
-    i, j = (index.ravel() for index in np.indices(city.shape[:2]))
-    corners = np.stack(
-        [np.column_stack([i + a, j + b, np.zeros(len(i))]) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))], axis=1
-    )
-    corners = city.origin + city.cell * corners
+def lit(triangles: np.ndarray, color: str) -> np.ndarray:
+    """The colour of each triangle (T, 3, 3) in the light of the sun, (T, 3)."""
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True) + 1e-12
+    light = 0.75 + 0.25 * (normals @ (SUN / np.linalg.norm(SUN)))
+    return light[:, None] * np.array(to_rgb(color))
+
+
+def layer_triangles(city: City, height: npt.ArrayLike) -> np.ndarray:
+    """Two triangles for each column of voxels, (nx·ny, 2, 3, 3) [m], at a height or at those of its corners.
+
+    Parameters
+    ----------
+    city : City
+    height : float or (nx + 1, ny + 1) array
+        z [m] of all, or of each corner of the columns, as from `ground_lattice`.
+    """
+    i, j = np.indices((city.shape[0] + 1, city.shape[1] + 1))
+    corners = city.origin + city.cell * np.stack([i, j, np.zeros(i.shape)], axis=-1)
     corners[..., 2] = height
-    return corners[:, [[0, 1, 2], [0, 2, 3]]]
+    return corners.reshape(-1, 3)[lattice_triangles(i.shape)].reshape(-1, 2, 3, 3)
 
 
 def voxel_surface(city: City) -> np.ndarray:

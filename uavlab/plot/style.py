@@ -75,12 +75,18 @@ def draw_routes(axes: Axes, routes: Sequence[Route]) -> None:
         axes.plot(*route.points[:, :2].T, color=color, linewidth=2, label=label_of(route))
         for point, marker in ((route.points[:1], "o"), (route.points[-1:], "^")):
             axes.plot(*point[:, :2].T, marker, color=color, markersize=9, markeredgecolor="white")
-    if routes:
+    if axes.get_legend_handles_labels()[0]:
         axes.figure.legend(loc="outside lower center", fontsize=8)
 
 
 def label_of(route: Route) -> str:
-    return f"{route.planner}, {route.length:.1f} m" if route.reached else f"{route.planner}: not reached"
+    name = plain(route.planner)
+    return f"{name}, {route.length:.1f} m" if route.reached else f"{name}: not reached"
+
+
+def plain(name: str) -> str:
+    """A name as matplotlib is to show it: no TeX in it, and no underscore first, which would hide it in legends."""
+    return name.replace("$", r"\$").replace("_", "\u200b_", 1 if name.startswith("_") else 0)
 
 
 def finished(figure: Figure) -> Figure:
