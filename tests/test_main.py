@@ -22,7 +22,7 @@ def test_writes_one_page_and_says_where(tmp_path, capsys):
     assert "srcdoc=" in page
     assert "data:image/svg+xml;base64," in page
     assert "<th>distance to keep</th><td>3.5 m</td>" in page
-    assert "<th>least clearance</th><td>3.50 m</td>" in page
+    assert "<th>least clearance</th><td>3.61 m</td>" in page
     assert len(page) < 700_000
 
 

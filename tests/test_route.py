@@ -1,6 +1,7 @@
 """Route: lengths, angles, the clearance of every metre, resampling, and its file."""
 
 import csv
+import time
 
 import numpy as np
 import pytest
@@ -77,32 +78,58 @@ def test_clearance_sees_a_thin_wall_between_two_waypoints():
     assert through.clearance(city) == 0
 
 
-def test_clearance_profile_lists_every_voxel_at_the_middle_of_its_stay():
+def test_clearance_profile_lists_every_stay_in_a_voxel_with_its_least_distance():
     distance, clearance = Route([(5.5, 2.5, 2.5), (15.5, 2.5, 2.5)]).clearance_profile(hallway())
     assert distance == pytest.approx([0.25, *range(1, 10), 9.75])
-    assert clearance == pytest.approx([4.5, 3.5, 2.5, 1.5, 0.5, 0, 0.5, 1.5, 2.5, 3.5, 4.5])
+    assert clearance == pytest.approx([4, 3, 2, 1, 0, 0, 0, 1, 2, 3, 4])
 
 
-def test_clearance_is_the_least_of_the_voxels_that_dense_sampling_meets():
+def box_distances(city, points):
+    """Distance of points (N, 3) to the nearest occupied voxel, from all of them [m]."""
+    low = city.center_of(np.argwhere(city.occupied)) - city.cell / 2
+    gap = np.maximum(np.maximum(low - points[:, None], points[:, None] - low - city.cell), 0)
+    return np.linalg.norm(gap, axis=2).min(axis=1)
+
+
+@pytest.mark.parametrize("origin", [(-4.0, 7.0, 1.0), (5e6, -5e6, 0.0)])
+@pytest.mark.parametrize("cell", [0.1, 2.5, 5.0])
+def test_clearance_is_the_least_distance_of_dense_samples_to_the_boxes(cell, origin):
     rng = np.random.default_rng(3)
-    city = City(rng.random((12, 12, 12)) < 0.02, cell=2.5, origin=(-4, 7, 1))
-    for _ in range(50):
+    city = City(rng.random((12, 12, 12)) < 0.02, cell=cell, origin=origin)
+    rounding = 4e-16 * np.abs(city.bounds).max()
+    for _ in range(25):
         route = Route(rng.uniform(*city.bounds, (4, 3)))
-        index, stay = city.voxels_along(route.points)
-        sampled = set(map(tuple, city.cell_of(route.resample(0.01).points).tolist()))
-        assert set(map(tuple, index[stay > 0.01].tolist())) <= sampled <= set(map(tuple, index.tolist()))
-        assert route.clearance(city) == city.clearance[tuple(index.T)].min()
+        sampled = box_distances(city, route.resample(0.02 * cell).points)
+        assert sampled.min() - 0.01 * cell - rounding <= route.clearance(city) <= sampled.min() + rounding
+        distance, clearance = route.clearance_profile(city)
+        assert clearance.min() == pytest.approx(route.clearance(city), abs=1e-9 * cell + 4 * rounding)
+        _, length = city.voxels_along(route.points)
+        for middle, stay, least in zip(distance, length, clearance, strict=True):
+            flown = np.linspace(middle - stay / 2, middle + stay / 2, 30)
+            points = np.stack([np.interp(flown, route.distance, axis) for axis in route.points.T], axis=1)
+            sampled = box_distances(city, points).min()
+            assert sampled - stay / 29 - 4 * rounding <= least <= sampled + 4 * rounding
+
+
+def test_clearance_of_a_long_route_takes_no_time(table1):
+    points = table1.bounds[0] + 0.5 + 99 * np.random.default_rng(0).random((10_000, 3)) * (1, 1, 0.99)
+    route = Route(points[np.argsort(points[:, 0])])
+    route.clearance(table1)
+    began = time.perf_counter()
+    route.clearance(table1)
+    assert time.perf_counter() - began < 1
 
 
 def test_outside_of_the_map_there_is_no_clearance():
     city = hallway()
     distance, clearance = Route([(-1.5, 2.5, 2.5), (1.5, 2.5, 2.5)]).clearance_profile(city)
-    assert clearance == pytest.approx([0, 0, 9.5, 8.5])
+    assert clearance == pytest.approx([0, 0, 9, 8.5])
+    assert Route([(-1.5, 2.5, 2.5), (1.5, 2.5, 2.5)]).clearance(city) == 0
     assert distance == pytest.approx([0.25, 1, 2, 2.75])
 
 
-def test_clearance_of_one_waypoint_is_its_voxel_s_and_of_none_unknown():
-    assert Route([(5.5, 2.5, 2.5)]).clearance(hallway()) == 4.5
+def test_clearance_of_one_waypoint_is_its_own_and_of_none_unknown():
+    assert Route([(5.7, 2.5, 2.5)]).clearance(hallway()) == pytest.approx(4.3)
     assert np.isnan(Route(np.empty((0, 3))).clearance(hallway()))
     assert np.isinf(Route([(1, 1, 1), (2, 2, 2)]).clearance(City(np.zeros((3, 3, 3)))))
 

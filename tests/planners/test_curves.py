@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from uavlab.checks import frozen
 from uavlab.city import City
-from uavlab.planners.curves import PER_SEGMENT, SLACK, Measure, Task, Terrain, breaches, costs_of, task_of
-from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN, Limits, checked_limits, price_per_cell
+from uavlab.city.segments import runs_of
+from uavlab.planners.curves import PER_SEGMENT, SLACK, Measure, Sky, Task, breaches, costs_of, task_of
+from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN, checked_limits, flyable_endpoints, price_per_cell
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
 from uavlab.route import Route
 from uavlab.spline import cubic_bspline
@@ -13,9 +15,17 @@ from uavlab.spline import cubic_bspline
 ANY = {"max_turn": np.pi, "max_pitch": np.pi / 2}
 
 
-def random_terrain(rng):
+def sky_over(price, closed, max_turn=np.pi, max_pitch=np.pi / 2, lowest=-np.inf, highest=np.inf, keep=0.0):
+    """A map as curves see it, without limits but for those given [cells]."""
+    low, high = np.full(closed.shape, lowest, float), np.full(closed.shape[:2], highest, float)
+    clearance = City(closed).clearance if keep else np.empty((0, 0, 0))
+    arrays = [frozen(np.array(values)) for values in (low, high, clearance)]
+    return Sky(price, frozen(closed, bool), *arrays[:2], runs_of(closed), arrays[2], keep, max_turn, max_pitch)
+
+
+def random_sky(rng):
     shape = rng.integers(4, 12, 3)
-    return Terrain(10 ** rng.uniform(-6, -3, shape), rng.random(shape) < 0.3, **ANY)
+    return sky_over(10 ** rng.uniform(-6, -3, shape), rng.random(shape) < 0.3)
 
 
 def random_lines(rng, shape, count=5, beyond=0.0):
@@ -27,16 +37,16 @@ def random_lines(rng, shape, count=5, beyond=0.0):
 @pytest.mark.parametrize("seed", range(60))
 def test_cost_and_way_in_closed_voxels_are_the_integrals_of_a_route(seed):
     rng = np.random.default_rng(seed)
-    terrain = random_terrain(rng)
-    city = City(np.zeros(terrain.closed.shape, bool), 1.0)
+    sky = random_sky(rng)
+    city = City(np.zeros(sky.closed.shape, bool), 1.0)
     lines = random_lines(rng, city.shape)
     if seed % 2:
         lines = cubic_bspline(lines, 6)
-    costs, closed, angles = costs_of(terrain, lines)
+    costs, closed, angles = costs_of(sky, lines)
     for line, cost, shut in zip(lines, costs, closed, strict=True):
         route = Route(line)
-        assert cost == pytest.approx(route.integral(city, terrain.price), rel=1e-9)
-        assert shut == pytest.approx(route.integral(city, terrain.closed), rel=1e-9, abs=1e-9)
+        assert cost == pytest.approx(route.integral(city, sky.price), rel=1e-9)
+        assert shut == pytest.approx(route.integral(city, sky.closed), rel=1e-9, abs=1e-9)
     assert (angles == 0).all() or seed % 2  # any turn, on legs longer than a voxel
 
 
@@ -44,25 +54,25 @@ def test_cost_and_way_in_closed_voxels_are_the_integrals_of_a_route(seed):
 def test_off_the_map_is_closed_and_costs_nothing(seed):
     """Against 20 000 samples along the way; the error of a sum over samples is some jumps of one sample each."""
     rng = np.random.default_rng(seed)
-    terrain = random_terrain(rng)
-    (line,) = random_lines(rng, terrain.closed.shape, count=1, beyond=3.0)
-    (cost,), (closed,), _ = costs_of(terrain, line[None])
+    sky = random_sky(rng)
+    (line,) = random_lines(rng, sky.closed.shape, count=1, beyond=3.0)
+    (cost,), (closed,), _ = costs_of(sky, line[None])
     dense = Route(line).resample(1e-3).points
     middles, length = (dense[1:] + dense[:-1]) / 2, np.linalg.norm(np.diff(dense, axis=0), axis=1)
     index = np.floor(middles).astype(int)
-    inside = ((index >= 0) & (index < terrain.closed.shape)).all(axis=1)
+    inside = ((index >= 0) & (index < sky.closed.shape)).all(axis=1)
     shut, price = np.ones(len(index)), np.zeros(len(index))
-    shut[inside], price[inside] = (values[tuple(index[inside].T)] for values in (terrain.closed, terrain.price))
+    shut[inside], price[inside] = (values[tuple(index[inside].T)] for values in (sky.closed, sky.price))
     crossings = 3 * np.abs(np.diff(index, axis=0)).sum()
     assert closed == pytest.approx(shut @ length, abs=1e-3 * crossings)
-    assert cost == pytest.approx(price @ length, abs=1e-3 * crossings * terrain.price.max())
+    assert cost == pytest.approx(price @ length, abs=1e-3 * crossings * sky.price.max())
     assert closed > 0
 
 
 def test_a_line_along_the_edge_of_the_map_is_within_it_below_and_off_it_above():
-    terrain = Terrain(np.ones((4, 4, 4)), np.zeros((4, 4, 4), bool), **ANY)
+    sky = sky_over(np.ones((4, 4, 4)), np.zeros((4, 4, 4), bool))
     low, high = np.array([[[0, 0, 0], [4, 0, 0]], [[0, 4, 0], [4, 4, 0]]], float)
-    costs, closed, _ = costs_of(terrain, np.array([low, high]))
+    costs, closed, _ = costs_of(sky, np.array([low, high]))
     assert costs.tolist() == [4, 0]
     assert closed.tolist() == [0, 4]
 
@@ -77,8 +87,8 @@ def east_then(degrees, before=2.0, after=2.0, climb=0.0):
 def angles_of(points, max_turn=60.0, max_pitch=90.0):
     """Excess of angles of one polyline [degrees]."""
     line = np.array([points], dtype=float) + 20.0
-    terrain = Terrain(np.ones((40, 40, 40)), np.zeros((40, 40, 40), bool), np.radians(max_turn), np.radians(max_pitch))
-    return np.degrees(costs_of(terrain, line)[2][0])
+    sky = sky_over(np.ones((40, 40, 40)), np.zeros((40, 40, 40), bool), *np.radians([max_turn, max_pitch]))
+    return np.degrees(costs_of(sky, line)[2][0])
 
 
 @pytest.mark.parametrize(
@@ -131,9 +141,14 @@ def test_a_line_without_excess_turns_and_climbs_as_route_says_within_the_limits(
 
 def campus_task(spline=True, **limits):
     risk_map = reference_campus()
-    limits = {"max_turn": MAX_TURN, "max_pitch": MAX_PITCH, "min_clearance": 0.0} | limits
+    return risk_map, task_for(risk_map, *CAMPUS_FLIGHT, spline, **limits)
+
+
+def task_for(risk_map, start, goal, spline=True, **limits):
+    every = {"max_turn": MAX_TURN, "max_pitch": MAX_PITCH, "min_clearance": 0.0, "min_height": None}
+    limits = checked_limits(risk_map, **(every | {"max_height": np.inf} | limits))
     price = price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
-    return risk_map, task_of(risk_map, *CAMPUS_FLIGHT, price, checked_limits(risk_map, **limits), spline)
+    return task_of(risk_map, flyable_endpoints(risk_map, start, goal, limits), price, limits, spline)
 
 
 def test_task_is_the_question_in_cells():
@@ -141,17 +156,22 @@ def test_task_is_the_question_in_cells():
     for end, point in zip((task.source, task.target), CAMPUS_FLIGHT, strict=True):
         city = risk_map.city
         assert city.origin + city.cell * end == pytest.approx(city.center_of(city.cell_of(np.array(point))))
-    assert np.array_equal(task.terrain.price, risk_map.rate)
-    clear = risk_map.flyable & (risk_map.city.clearance >= 4.0 - 1e-9)
-    assert np.array_equal(task.terrain.closed, ~clear)
-    assert clear.sum() < risk_map.flyable.sum()
+    assert np.array_equal(task.sky.price, risk_map.rate)
+    assert np.array_equal(task.sky.closed, risk_map.city.occupied)
+    assert task.sky.keep == pytest.approx(4.0 / risk_map.city.cell)
+    roofs = np.maximum(risk_map.city.surface_below + risk_map.safe_height, risk_map.min_height) / risk_map.city.cell
+    assert task.sky.lowest == pytest.approx(roofs)
+    assert np.isinf(task.sky.highest).all()
+    (_, task) = campus_task(max_height=60.0, min_height=20.0)
+    assert task.sky.highest == pytest.approx(np.full(risk_map.city.shape[:2], 12))
+    assert task.sky.lowest.min() == pytest.approx(4)
 
 
 def curves_near(task, rng, count=40, waypoints=5, wide=4.0):
     """Control points (N, K + 2, 3) around the straight line."""
     control = np.linspace(task.source, task.target, waypoints + 2) + rng.normal(0, wide, (count, waypoints + 2, 3))
     control[:, 0], control[:, -1] = task.source, task.target
-    return np.clip(control, 0, np.array(task.terrain.closed.shape) - 1e-9)
+    return np.clip(control, 0, np.array(task.sky.closed.shape) - 1e-9)
 
 
 @pytest.mark.parametrize("spline", [True, False])
@@ -161,7 +181,7 @@ def test_costs_are_the_integral_and_any_breach_costs_more_the_worse_it_is(spline
     control[::2, 1:-1, 2] += 4.0  # above most roofs
     costs = task.costs(control, PER_SEGMENT)
     lines = task.lines(control, PER_SEGMENT)
-    _, closed, angles = costs_of(task.terrain, lines)
+    _, closed, angles = costs_of(task.sky, lines)
     broken = closed + angles
     city = risk_map.city
     for line, cost in zip(lines[broken == 0], costs[broken == 0], strict=True):
@@ -177,9 +197,7 @@ def test_a_long_way_round_still_costs_less_than_a_little_breach():
     occupied = np.zeros((40, 40, 4), bool)
     occupied[:35, 20] = True
     risk_map = RiskMap(City(occupied, 2.0), 0.01, 0.5, safe_height=0.0)
-    price = price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
-    limits = Limits(np.pi, np.pi / 2, 0.0, 0.0, 0.0)
-    task = task_of(risk_map, (21, 38, 5), (21, 44, 5), price, limits, False)
+    task = task_for(risk_map, (21, 38, 5), (21, 44, 5), False, **ANY)
     round_it, through_it = [(38, 19, 2.5), (38, 22, 2.5)], [(10.5, 20.5, 2.5), (10.5, 21, 2.5)]
     good, bad = (task.costs(np.array([[task.source, *way, task.target]]), 1)[0] for way in (round_it, through_it))
     assert good < bad / 10
@@ -200,9 +218,7 @@ def test_finer_is_the_same_curve_with_a_point_more_between_each_two(spline):
         else:
             assert denser[::2] == pytest.approx(dense, abs=1e-12)
             assert Route(denser).length == pytest.approx(Route(dense).length)
-        for coarse, fine in zip(
-            costs_of(task.terrain, dense[None])[:2], costs_of(task.terrain, denser[None])[:2], strict=True
-        ):
+        for coarse, fine in zip(costs_of(task.sky, dense[None])[:2], costs_of(task.sky, denser[None])[:2], strict=True):
             assert fine == pytest.approx(coarse, rel=1e-9, abs=1e-9)
 
 
@@ -249,10 +265,16 @@ def test_measure_counts_curves_and_notes_the_best_and_the_least_cost_of_a_sound_
 
 def test_breaches_say_what_is_wrong_in_metres():
     _, task = campus_task(False)
-    closed = task.terrain.closed.copy()
-    closed[:] = False
+    closed = np.zeros(task.sky.closed.shape, bool)
     closed[10, 5, 5] = True
-    task = Task(task.terrain._replace(closed=closed), task.source, task.target, False, task.breach, task.unflyable)
+    task = Task(
+        sky_over(task.sky.price, closed, MAX_TURN, MAX_PITCH),
+        task.source,
+        task.target,
+        False,
+        task.breach,
+        task.unflyable,
+    )
     straight = np.array([(2.5, 5.5, 5.5), (20.5, 5.5, 5.5)])
     assert breaches(task, straight, 5.0) == "flies 5.0 m where it may not"
     assert breaches(task, straight + np.array([0, 2, 0]), 5.0) == ""
@@ -264,10 +286,46 @@ def test_breaches_say_what_is_wrong_in_metres():
     )
 
 
+def test_way_too_low_or_too_high_is_a_breach():
+    """A leg that climbs from z = 1 to 5 over 8 voxels; in the columns from x = 4 on it must be 3 high, at most 4.5."""
+    sky = sky_over(np.ones((8, 1, 6)), np.zeros((8, 1, 6), bool))
+    leg = np.array([[(0, 0.5, 1), (8 - 1e-9, 0.5, 5)]])
+    assert costs_of(sky, leg)[1][0] == 0
+    lowest, highest = np.full((8, 1, 6), -np.inf), np.full((8, 1), 4.5)
+    lowest[4:] = 3.0
+    slope = np.sqrt(1 + 0.5**2)
+    breach = {n: costs_of(sky._replace(lowest=frozen(low), highest=frozen(high)), leg)[1][0] for n, low, high in (
+        ("low", lowest + 0.25, highest + 9), ("exact", lowest, highest + 9), ("high", lowest, highest)
+    )}  # fmt: skip
+    assert breach["low"] == pytest.approx(slope / 2)  # in the first of them, up to z = 3.25
+    assert breach["exact"] == 0
+    assert breach["high"] == pytest.approx(slope)  # the last column, from z = 4.5 on
+    assert costs_of(sky._replace(highest=frozen(highest - 0.25)), leg)[1][0] == pytest.approx(1.5 * slope)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_legs_that_come_too_near_count_their_length(seed):
+    """Against samples along each; those whose distance the samples can't tell from what is asked for are left out."""
+    rng = np.random.default_rng(seed)
+    closed = rng.random((12, 12, 12)) < 0.02
+    keep = rng.uniform(0.2, 2.5)
+    sky, free = sky_over(np.ones(closed.shape), closed, keep=keep), sky_over(np.ones(closed.shape), closed)
+    lines = random_lines(rng, closed.shape, count=60)[:, :2]
+    city, told = City(closed), 0
+    for line, shut, entered in zip(lines, costs_of(sky, lines)[1], costs_of(free, lines)[1], strict=True):
+        least = city.distance(Route(line).resample(0.01).points, 4.0).min()
+        length = np.linalg.norm(line[1] - line[0])
+        if abs(least - keep) > 0.01:
+            told += 1
+            assert shut == pytest.approx(length if least < keep else 0.0)
+        assert entered <= shut + 1e-9
+    assert told > 40
+
+
 def test_compiled_and_plain_python_agree():
     rng = np.random.default_rng(4)
-    terrain = random_terrain(rng)._replace(max_turn=1.0, max_pitch=0.5)
-    lines = random_lines(rng, terrain.closed.shape, beyond=1.0)
-    for fast, plain in zip(costs_of(terrain, lines), costs_of.py_func(terrain, lines), strict=True):
+    sky = random_sky(rng)._replace(max_turn=1.0, max_pitch=0.5)
+    lines = random_lines(rng, sky.closed.shape, beyond=1.0)
+    for fast, plain in zip(costs_of(sky, lines), costs_of.py_func(sky, lines), strict=True):
         assert fast == pytest.approx(plain, rel=1e-12)
         assert (fast > 0).all()

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from uavlab.city import City
+from uavlab.city import City, NoFlyZone
 from uavlab.planners import astar, penalty_zone, shortcut
 from uavlab.route import Route
 
@@ -150,13 +150,57 @@ def test_no_subset_of_the_waypoints_is_cheaper(seed):
         assert shortcut(whole, city, price=prices).cost == pytest.approx(least, rel=1e-7)
 
 
-@pytest.mark.parametrize("min_clearance", [1.5, 3.5])
-def test_clearance_is_kept_by_all_voxels_that_are_passed(table1, min_clearance):
-    for start, goal in [((90, 20, 30), (50, 44, 30)), ((5, 5, 5), (95, 95, 50)), ((5, 50, 20), (60, 80, 80))]:
-        route = astar(table1, start, goal, min_clearance=min_clearance)
-        short = shortcut(route, table1, min_clearance=min_clearance)
-        assert short.length < route.length
-        assert short.clearance(table1) >= min_clearance - 1e-9
+def box_distance(city, points):
+    """Least distance of points (N, 3) to an occupied voxel, from all of them [m]."""
+    low = city.center_of(np.argwhere(city.occupied)) - city.cell / 2
+    gaps = (np.maximum(np.maximum(low - point, point - low - city.cell), 0) for point in points)
+    return min(np.linalg.norm(gap, axis=1).min(initial=np.inf) for gap in gaps)
+
+
+@pytest.mark.parametrize("origin", [(0.0, 0.0, 0.0), (5e5, 5e6, -30.0)])
+@pytest.mark.parametrize("seed", range(30))
+def test_every_leg_keeps_min_clearance_on_its_whole_length(seed, origin):
+    rng = np.random.default_rng(seed)
+    city = City(rng.random((16, 14, 8)) < rng.uniform(0.005, 0.03), rng.choice([0.1, 1.0, 5.0]), origin)
+    min_clearance = city.cell * rng.choice([0.5, 1.0, 1.2, 2.0])
+    for start, goal in city.random_pairs(3, rng, apart=6 * city.cell, min_clearance=min_clearance):
+        route = astar(city, start, goal, min_clearance=min_clearance)
+        if route.reached:
+            short = shortcut(route, city, min_clearance=min_clearance)
+            rounding = city.cell * 1e-9 + 4e-15 * np.abs(city.bounds).max()
+            assert box_distance(city, short.resample(0.05 * city.cell).points) >= min_clearance - rounding
+            assert short.clearance(city) >= min_clearance - rounding
+            assert short.length <= route.length * (1 + 1e-12)
+
+
+def test_a_leg_may_pass_a_voxel_whose_centre_is_too_near():
+    """1.2 m from the wall at y = 1: through voxels whose centres are 0.5 and 1.5 m from it."""
+    city = City(np.pad(np.ones((20, 1, 3), bool), ((0, 0), (0, 9), (0, 0))))
+    route = Route([(0.5, 2.2, 1.5), (5.5, 4.5, 1.5), (19.5, 2.2, 1.5)])
+    assert len(shortcut(route, city, min_clearance=1.2).points) == 2
+    with pytest.raises(ValueError, match=r"too near .* between waypoints 1"):
+        shortcut(Route([(0.5, 2.3, 1.5), (5.5, 2.2, 1.5), (9.5, 2.19, 1.5)]), city, min_clearance=1.2)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_legs_keep_heights_and_zones_at_each_point(seed):
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(24), np.arange(20), indexing="ij")
+    ground = 3 * np.sin(x / rng.uniform(2, 5)) + 2 * np.cos(y / rng.uniform(2, 5))
+    zone = NoFlyZone([(9.3, 6.2), (13.1, 7.4), (11, 12.7)], 0.0, 100.0)
+    city = City(np.zeros((24, 20, 26), bool), 1.0, (0, 0, -6), ground=ground, no_fly=(zone,))
+    heights = {"min_height": 2.3, "max_height": 9.0}
+    route = astar(city, (1.5, 9.5, ground[1, 9] // 1 + 5.5), (22.5, 9.5, ground[22, 9] // 1 + 5.5), **heights)
+    short = shortcut(route, city, **heights)
+    assert len(short.points) < len(route.points)
+    points = short.resample(0.01).points
+    above = city.height_above_ground(points)
+    assert above.min() >= 2.3 - 1e-6
+    assert above.max() <= 9.0 + 1e-6
+    lowest, highest = (limit[tuple(city.cell_of(points)[:, :2].T)] for limit in city.range_of_ground)
+    assert (points[:, 2] >= highest + 2.3 - 1e-6).all()
+    assert (points[:, 2] <= lowest + 9.0 + 1e-6).all()
+    assert not city.in_no_fly[tuple(city.cell_of(points).T)].any()
 
 
 def test_a_penalty_zone_is_kept_in_mind(table1):
@@ -183,7 +227,7 @@ def test_a_line_may_not_touch_the_corner_of_an_obstacle():
 @pytest.mark.parametrize("step", [10.0, 0.8, 0.4])
 def test_a_route_that_cuts_a_corner_is_refused_also_when_resampled(step):
     city = walled((1, 0, 0), shape=(3, 3, 1))
-    with pytest.raises(ValueError, match="route passes through a blocked voxel"):
+    with pytest.raises(ValueError, match="route comes too near to an obstacle"):
         shortcut(Route([(0.5, 0.5, 0.5), (1.5, 1.5, 0.5)]).resample(step), city)
 
 
@@ -205,7 +249,8 @@ def test_a_line_along_the_face_of_an_obstacle_is_blocked_on_either_side(mirrored
             Route([(0.5, 0.5, 0.5), (0.5, 1.5, 0.5), (0.5, 4.5, 0.5)]),
             walled((0, 3, 0)),
             {},
-            r"route passes through a blocked voxel between waypoints 1 \(0.5, 1.5, 0.5\) and 2 \(0.5, 4.5, 0.5\)",
+            r"route comes too near to an obstacle or a zone, too low or too high, between waypoints 1 \(0.5, 1.5, 0.5\) "
+            r"and 2 \(0.5, 4.5, 0.5\)",
         ),
         (Route([(0.5, 0.5, 0.5), (0.5, 9.5, 0.5)]), walled(), {}, "between waypoints 0 .* and 1"),
         (

@@ -25,13 +25,17 @@ def campuses():
 
 
 def keeps_limits(risk_map, route, *, max_turn=LIMIT, max_pitch=LIMIT, min_clearance=0.0):
-    """Whether a curve is all in voxels that may be flown, from end to end, and keeps the angles."""
-    index, length = route.voxels(risk_map.city)
-    index = index[length > 1e-9 * risk_map.city.cell]
-    free = risk_map.flyable & (risk_map.city.clearance >= min_clearance - 1e-9)
-    ends = [risk_map.city.center_of(risk_map.city.cell_of(np.array(end))) for end in CAMPUS_FLIGHT]
+    """Whether a curve keeps heights, clearance and angles from end to end; but for the angles by dense samples."""
+    city = risk_map.city
+    points = route.resample(0.02).points
+    index = tuple(city.cell_of(points).T)
+    above = points[:, 2] - city.surface_below[index]
+    ends = [city.center_of(city.cell_of(np.array(end))) for end in CAMPUS_FLIGHT]
     return (
-        free[tuple(index.T)].all()
+        not city.occupied[index].any()
+        and above.min() >= risk_map.safe_height - 1e-6
+        and city.height_above_ground(points).min() >= risk_map.min_height - 1e-6
+        and city.distance(points, min_clearance + 1.0).min() >= min_clearance - 1e-6
         and np.allclose(route.points[[0, -1]], ends, atol=1e-9)
         and (route.turn <= max_turn).all()
         and (np.abs(route.pitch) <= max_pitch).all()
@@ -128,12 +132,17 @@ def test_same_seed_same_route_and_the_global_state_is_left_alone():
     assert np.array_equal(before, np.random.get_state()[1])  # noqa: NPY002
 
 
+def ends_of(risk_map, *ends):
+    limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
+    return module.flyable_endpoints(risk_map, *ends, limits)
+
+
 def near(risk_map, route, waypoints=7):
     """What the curve near a route costs; infinite if it breaks a limit."""
     points = (route.points - risk_map.city.origin) / risk_map.city.cell
-    limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0)
+    limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
     price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
-    task = module.task_of(risk_map, *CAMPUS_FLIGHT, price, limits, True)
+    task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, limits, True)
     cost = task.costs(task.nearest(points, waypoints + 2)[None], 8)[0]
     return cost if cost < task.unflyable else np.inf
 
@@ -188,7 +197,7 @@ def test_an_initial_route_must_lead_from_start_to_goal():
 def test_points_on_planes_stay_on_the_map_and_reach_its_walls():
     city = City(np.zeros((20, 12, 6), bool), 2.0)
     risk_map = RiskMap(city, 0.01, 0.5, safe_height=0.0)
-    limits = module.checked_limits(risk_map, np.pi, np.pi / 2, 0.0)
+    limits = module.checked_limits(risk_map, np.pi, np.pi / 2, 0.0, None, np.inf)
     price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
     for ends in (
         ((3, 3, 3), (37, 21, 9)),
@@ -196,7 +205,7 @@ def test_points_on_planes_stay_on_the_map_and_reach_its_walls():
         ((9, 11, 1), (9, 11, 11)),
         ((37, 3, 3), (31, 21, 9)),
     ):
-        task = module.task_of(risk_map, *ends, price, limits, True)
+        task = module.task_of(risk_map, ends_of(risk_map, *ends), price, limits, True)
         space = module.space_of(task, 5, "planes")
         corners = np.array(list(itertools.product((0, 1), repeat=2)))
         low, high = space.bounds.reshape(5, 2, 2)[..., 0], space.bounds.reshape(5, 2, 2)[..., 1]
@@ -211,15 +220,15 @@ def test_points_on_planes_stay_on_the_map_and_reach_its_walls():
 
 def test_arcs_are_curves_on_the_map_that_bend_to_both_sides():
     risk_map = campus(0)
-    limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0)
+    limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
     price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
-    task = module.task_of(risk_map, *CAMPUS_FLIGHT, price, limits, True)
+    task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, limits, True)
     arcs = module.arcs_between(task, 7, 2000, np.random.default_rng(0))
     assert arcs.shape == (2000, 9, 3)
     assert (arcs[:, 0] == task.source).all()
     assert arcs[:, -1] == pytest.approx(np.broadcast_to(task.target, (2000, 3)))
     assert (arcs >= 0).all()
-    assert (arcs < task.terrain.closed.shape).all()
+    assert (arcs < task.sky.closed.shape).all()
     side = module.sideways_of(task)
     sideways = (arcs[:, 4] - (task.source + task.target) / 2) @ side
     assert (sideways > 0).mean() == pytest.approx(0.5, abs=4 * 0.5 / 2000**0.5)
@@ -425,7 +434,9 @@ def test_the_least_budgets_that_are_allowed_are_enough():
 def test_ends_that_make_no_question_are_refused():
     house = campus(0).city.center_of(np.argwhere(campus(0).city.occupied)[0])
     refuses("start .* lies in building", ends=(house, CAMPUS_FLIGHT[1]))
-    refuses("goal .* is too low", ends=(CAMPUS_FLIGHT[0], (112.5, 112.5, 2.5)))
+    low = ~campus(0).flyable & ~campus(0).city.blocked(min_height=campus(0).min_height)  # just above a roof
+    above_roof = campus(0).city.center_of(np.argwhere(low)[0])
+    refuses(r"goal .* above what lies below, safe_height asks for 3 m", ends=(CAMPUS_FLIGHT[0], above_roof))
     refuses("start must be finite", ends=((np.nan, 1, 1), CAMPUS_FLIGHT[1]))
     refuses("lie in the same voxel", ends=(CAMPUS_FLIGHT[0], CAMPUS_FLIGHT[0]))
     refuses("risk_map must be a RiskMap, got City", BAD.city, ENDS)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from uavlab.city import City
+from uavlab.city import City, NoFlyZone
 from uavlab.planners import astar, shortcut
 from uavlab.risk import random_campus
 from uavlab.route import Route
@@ -202,37 +202,77 @@ def test_repeating_waypoints_alone_clears_them_as_well(any_angle, monkeypatch):
     assert repaired > 20
 
 
-def test_where_not_even_straight_lines_are_seen_to_be_clear_it_says_so(monkeypatch):
-    """Legs as short as the step of the check are known too coarsely, once they stand still, for a body just as wide."""
-    monkeypatch.setattr(smoothing, "MIDPOINT_ROUNDS", 0)
-    city, _ = around_a_corner(8, RADIUS)
-    legs = np.array([8.2, *(6.2 - 0.05 * np.arange(40))])
-    points = [*[(x, 8.2, 1.5) for x in legs[::-1]], *[(8.2, y, 1.5) for y in legs[1:]]]
-    with pytest.raises(
-        ValueError, match=r"route passes an obstacle so closely at \([456]\.\d, 8\.2, 1\.5\) that not even"
-    ):
-        smooth(Route(points), city, RISK_QUADROTOR)
+def test_where_not_even_straight_lines_are_clear_it_says_so(monkeypatch):
+    """Which can't be, or the route would have been refused; unless the curve is asked for more than the route."""
+    city, route = around_a_corner(8, RADIUS)
+    monkeypatch.setattr(smoothing, "refuse_route", lambda *_: None)
+    with pytest.raises(ValueError, match=r"route passes an obstacle so closely at \(.*\) that not even straight"):
+        smooth(route, city, RISK_QUADROTOR, min_clearance=0.3)
 
 
-def closed_depth(city, curve, min_clearance):
-    """How deep [m] samples of a curve lie in closed voxels, at most, and the number of closed voxels on its way."""
-    points = samples(curve)
-    cells = (points - city.origin) / city.cell
-    closed = city.blocked(min_clearance)[tuple(np.floor(cells).astype(int).T)]
-    depth = city.cell * np.minimum(cells % 1, 1 - cells % 1).min(axis=1)[closed]
-    index = city.voxels_along(curve.points)[0]
-    return depth.max(initial=0.0), city.blocked(min_clearance)[tuple(index.T)].sum()
+def exact_distance(city, points):
+    """Least distance of points (N, 3) to an occupied voxel, from all of them [m]."""
+    low = city.center_of(np.argwhere(city.occupied)) - city.cell / 2
+    gaps = (np.maximum(np.maximum(low - point, point - low - city.cell), 0) for point in points)
+    return min(np.linalg.norm(gap, axis=1).min(initial=np.inf) for gap in gaps)
 
 
-def test_closed_voxels_are_not_entered(table1):
-    """Of the chords of the curve this is exact; the curve may leave them by its sagitta, at most a millimetre."""
-    entered = 0
+def test_the_curve_keeps_min_clearance_all_along(table1):
+    """As far as any-angle routes do, to the last bit; but only if asked."""
+    nearer = 0
     for _, route in planned(table1, 40, 5, 2.0):
-        deepest, on_the_way = closed_depth(table1, smooth(route, table1, RISK_QUADROTOR, min_clearance=2.0), 2.0)
-        assert on_the_way == 0
-        assert deepest < 1e-3
-        entered += closed_depth(table1, smooth(route, table1, RISK_QUADROTOR), 2.0)[1] > 0
-    assert entered > 10  # so it takes a request
+        curve = smooth(route, table1, RISK_QUADROTOR, min_clearance=2.0)
+        assert table1.distance(samples(curve), 4.0).min() >= 2.0 - 1e-8
+        assert curve.clearance(table1) >= 2.0 - 1e-8
+        nearer += smooth(route, table1, RISK_QUADROTOR).clearance(table1) < 2.0 - 1e-6
+    assert nearer > 10  # so it takes a request
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_on_random_maps_the_curve_keeps_what_the_route_was_asked_for(seed):
+    rng = np.random.default_rng(seed)
+    occupied = rng.random((20, 16, 10)) < 0.015
+    city = City(occupied, rng.choice([0.5, 2.0, 5.0]), rng.choice([0.0, 5e5], 3))
+    min_clearance = city.cell * rng.uniform(0.5, 2.0)
+    rounding = city.cell * 2e-9 + 4e-15 * np.abs(city.bounds).max()
+    for start, goal in city.random_pairs(2, rng, apart=10 * city.cell, min_clearance=min_clearance):
+        route = astar(city, start, goal, min_clearance=min_clearance)
+        if route.reached and min_clearance >= RADIUS:
+            for flown in (route, shortcut(route, city, min_clearance=min_clearance)):
+                curve = smooth(flown, city, RISK_QUADROTOR, min_clearance=min_clearance)
+                points = curve.at(np.arange(0, curve.parameter[-1], 0.05))
+                assert exact_distance(city, points) >= min_clearance - rounding
+
+
+def hills(seed=0):
+    """A map with ground that goes up and down, and a zone."""
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(30), np.arange(24), indexing="ij")
+    ground = 3 * np.sin(x / rng.uniform(2, 5)) + 2 * np.cos(y / rng.uniform(2, 5))
+    zone = NoFlyZone([(11.3, 8.2), (17.1, 9.4), (14, 16.7)], 0.0, 100.0)
+    return City(np.zeros((30, 24, 30), bool), 1.0, (0, 0, -6), ground=ground, no_fly=(zone,))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_heights_and_zones_are_kept_between_take_off_and_landing(seed):
+    city, heights = hills(seed), {"min_height": 4.0, "max_height": 9.0}
+    ends = [(x, 11.5, np.floor(city.range_of_ground[1][int(x), 11]) + 1.5) for x in (2.5, 27.5)]
+    route = shortcut(astar(city, *ends, **heights), city, **heights)
+    assert min(route.takeoff, route.landing) > 0
+    curve = smooth(route, city, RISK_QUADROTOR, **heights)
+    assert (curve.takeoff, curve.landing) == (route.takeoff + 1, route.landing + 1)
+    assert curve.points[[0, -1]] == pytest.approx(np.array(ends))
+    parameter = np.linspace(curve.takeoff, int(curve.parameter[-1]) - curve.landing, 20_000)
+    points = curve.at(parameter)
+    lowest, highest = (limit[tuple(city.cell_of(points)[:, :2].T)] for limit in city.range_of_ground)
+    assert (points[:, 2] >= highest + 4.0 - 1e-6).all()
+    assert (points[:, 2] <= lowest + 9.0 + 1e-6).all()
+    assert not city.in_no_fly[tuple(city.cell_of(points).T)].any()
+    top, way = curve.at(curve.takeoff), route.en_route.points
+    assert top == pytest.approx(way[0])
+    assert curve.at(np.linspace(0, curve.takeoff, 99))[:, :2] == pytest.approx(np.tile(way[0, :2], (99, 1)))
+    assert curve.at(int(curve.parameter[-1]) - curve.landing) == pytest.approx(way[-1])
+    smooth(route, city, RISK_QUADROTOR, min_clearance=2.5, **heights)  # the ground is nearer while it takes off
 
 
 def test_the_route_stays_as_it_was_and_the_curve_is_always_the_same(any_angle):
@@ -270,7 +310,7 @@ WALL = City(np.pad(np.ones((1, 10, 5), bool), ((10, 9), (0, 10), (0, 5))))
         (
             Route([(1, 1, 1), (2, 1, 1), (15, 1, 1)]),
             0,
-            "closed voxel or leaves the map between waypoints 1 (2.0, 1.0, 1.0) and 2 (15.0, 1.0, 1.0), before it is",
+            "or leaves the map between waypoints 1 (2.0, 1.0, 1.0) and 2 (15.0, 1.0, 1.0), before it is",
         ),
         (
             Route([(1, 1, 1), (1, 25, 1)]),
@@ -280,7 +320,7 @@ WALL = City(np.pad(np.ones((1, 10, 5), bool), ((10, 9), (0, 10), (0, 5))))
         (
             Route([(1, 10.5, 1), (1, 15.5, 1), (19, 15.5, 1), (19, 10.5, 1)]),
             6.0,
-            "give the min_clearance that it was planned with",
+            "give the min_clearance and heights that it was planned with",
         ),
         (
             Route([(1, 12, 1), (10.5, 10.1, 1), (19, 12, 1)]),

@@ -1,7 +1,7 @@
 """What a straight leg must keep at each of its points: its distance to obstacles, out of no-fly zones, heights.
 
-A planner on the grid asks only at the centres of voxels, which is enough for its short moves (see `uavlab.planners.grid`);
-legs at any angle and curves are asked all along. Compiled code counts in cells.
+A planner on the grid asks only at the centres of voxels. That is enough for its moves, as every voxel of a move's
+bounding box is asked; legs at any angle and curves are asked all along. Compiled code counts in cells.
 """
 
 import math

@@ -146,8 +146,7 @@ def costs_of(sky, lines):
 def along(sky, start, end):
     """∫ price ds over a straight leg, and how much of it is where it may not be [cells].
 
-    That is the stays in voxels that are closed, off the map, or in part too low or too high; the whole leg, if it
-    comes too near to an obstacle.
+    That is in voxels that are closed, off the map, too low or too high; all of it, if it comes too near to an obstacle.
     """
     climb = end[2] - start[2]
     length = math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2 + climb**2)
@@ -160,8 +159,10 @@ def along(sky, start, end):
         if 0 <= i < nx and 0 <= j < ny and 0 <= k < nz:
             z, w = start[2] + entered * climb, start[2] + leave[m] * climb
             cost += stay * sky.price[i, j, k]
-            if sky.closed[i, j, k] or min(z, w) < sky.lowest[i, j, k] or max(z, w) > sky.highest[i, j]:
+            if sky.closed[i, j, k]:
                 shut += stay
+            else:
+                shut += stay * share_outside(z, w, sky.lowest[i, j, k], sky.highest[i, j])
         else:
             shut += stay
         entered = leave[m]
@@ -169,6 +170,17 @@ def along(sky, start, end):
     if near and segment_clearance(sky.obstacles, start, end, sky.keep) < sky.keep:
         shut = length
     return cost, shut
+
+
+@compiled
+def share_outside(start, end, low, high):
+    """How much of the way from one height to another is below `low` or above `high`."""
+    bottom, top = min(start, end), max(start, end)
+    if bottom >= low and top <= high:
+        return 0.0
+    if top <= low or bottom >= high:
+        return 1.0
+    return (max(low - bottom, 0.0) + max(top - high, 0.0)) / (top - bottom)
 
 
 @compiled

@@ -135,8 +135,8 @@ def repare(
     if now.grounded:
         return Route(np.empty((0, 3)), "REPARE", reached=False, reason=f"grounded: {now.grounded}", cost=np.inf)
     widening = (0.0, 0.0, 0.0) if as_printed else checks.three("mean_offset", mean_offset)
-    for name, node in (("start", ends.source), ("goal", ends.target)):
-        refuse_swallowed(city, name, node, now.safe_distance, widening)
+    for name, point, node in (("start", start, ends.source), ("goal", goal, ends.target)):
+        refuse_swallowed(city, name, point, node, now.safe_distance, widening)
 
     def plan(here: npt.ArrayLike, given: Conditions) -> Route:
         source = int(city.code_of(city.cell_of(here)))
@@ -192,17 +192,23 @@ def replanned(
     return named(replace(route, info=route.info | {"expanded": expanded, "elapsed": elapsed}), flown, plans)
 
 
-def refuse_swallowed(city: City, name: str, node: int, safe_distance: float, mean_offset: tuple[float, ...]) -> None:
+def refuse_swallowed(
+    city: City,
+    name: str,
+    point: npt.ArrayLike,
+    node: int,
+    safe_distance: float,
+    mean_offset: tuple[float, ...],
+) -> None:
     """`ValueError` if a start or goal lies in the zone; it says by how much and which point would do."""
     index = tuple(city.index_of(node))
-    point = city.center_of(index)
     widened = max(0.0, -float(city.wall_normal[index] @ mean_offset)) if any(mean_offset) else 0.0
     short = safe_distance + widened - float(city.clearance[index])
     if short > 1e-9 * city.cell:
         outside = city.clearance >= safe_distance + city.towards_wall(mean_offset) - 1e-9 * city.cell
         instead = "no voxel of the map keeps it"
         if outside.any():
-            instead = nearest_allowed(city, point, outside)
+            instead = nearest_allowed(city, city.center_of(index), outside)
         needed = f"D_min of {safe_distance:g} m" + (f" and {widened:.2f} m of mean offset" if widened else "")
         raise ValueError(
             f"{name} {checks.show(point)} is {city.clearance[index]:.2f} m from the nearest obstacle, {short:.2f} m "

@@ -144,6 +144,8 @@ def waypoint_swarm(
     checks.number("refinement", refinement)
     if not 0 <= refinement < 1:
         raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
+    if initial is not None:
+        checks.instance("initial", initial, Route)
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     price = price_per_cell(risk_map, risk, length, threat, drift=False)
     ends = flyable_endpoints(risk_map, start, goal, limits)
@@ -342,7 +344,6 @@ def arcs_between(task: Task, waypoints: int, count: int, rng: np.random.Generato
 
 def near(task: Task, route: Route, risk_map: RiskMap, waypoints: int) -> np.ndarray:
     """Points with both ends (K + 2, 3) of a curve near a route, from the task's start to its goal."""
-    checks.instance("initial", route, Route)
     points = (route.points - risk_map.city.origin) / risk_map.city.cell
     if len(points) < 2 or np.abs(points[[0, -1]] - (task.source, task.target)).max() > 0.5 + 1e-9:
         raise ValueError(f"initial must lead from start to goal, within a voxel of both, got {route!r}")

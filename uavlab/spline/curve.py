@@ -26,7 +26,7 @@ UNRESOLVED = 0.5
 """A change of direction between two points [rad] in which the curvature of neither may be the greatest."""
 
 CONTACT = 0.02
-"""Share of its radius by which a body may overlap an obstacle before that counts as contact; half of it for the route."""
+"""Share of its radius by which a body may overlap an obstacle before that is contact; half of it for the route."""
 
 
 def curvature(velocity: npt.ArrayLike, acceleration: npt.ArrayLike) -> np.ndarray:

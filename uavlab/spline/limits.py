@@ -164,7 +164,7 @@ def feasibility(
     air_speed = np.linalg.norm(speed * curve.tangent - checks.three("wind", wind), axis=1)
     body = (1 - CONTACT) * uav.diameter / 2 if min_clearance is None else min_clearance
     checks.not_negative_number("min_clearance", body)
-    distances = curve.least_distances(city, body + city.cell)
+    distances = curve.least_distances(city)
     least = float(distances.min())
     nearest = int(np.flatnonzero(distances <= (1 + 1e-9) * least)[0])
     return feasibility_after(

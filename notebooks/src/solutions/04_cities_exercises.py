@@ -92,9 +92,10 @@ if exercises.check("04.2", box_clearance):
 # %% [markdown]
 # ## 04.3 How much of a street is left?
 #
-# Two long, high walls stand `gap` metres apart, across the x axis. You don't choose where the grid begins, so
-# expect the worst. How much clearance is a planner **sure** to find in the street, at its best node, on the most
-# unlucky grid? Return 0 when an unlucky grid closes the street.
+# Two long, high walls stand `gap` metres apart, across the x axis. The map takes the papers' rule: a voxel is occupied
+# when its centre lies in a wall (`voxels="centres"`). You don't choose where the grid begins, so expect the worst. How
+# much clearance is a planner **sure** to find in the street, at its best node, on the most unlucky grid? Return 0 when
+# an unlucky grid closes the street.
 #
 # *Three things to count with:* How many centres are sure to lie strictly between the walls (a centre on a wall is
 # inside it)? They are the free voxels, in a row. Which of them is farthest from the occupied ones on both sides?
@@ -128,7 +129,9 @@ if exercises.check("04.3", street_clearance):
 
 # %% [markdown] tags=["solution"]
 # 1 m is the coarsest that will do: 2 m leaves 3 m, because a grid whose centres fall on both walls loses a voxel on
-# either side. And 3 m leaves 4.5 m: three voxels in a row have one in the middle, four have none. The same by
+# either side. And 3 m leaves 4.5 m: three voxels in a row have one in the middle, four have none. But this is clearance
+# from voxels: by centres a wall may stand up to half a cell before its voxels, so 3 m of the 4.5 m are certain. With
+# `voxels="touched"` only `floor(gap / cell) - 1` voxels are sure to be free, and what they keep is true. The same by
 # throwing grids, without a formula:
 
 
