@@ -660,11 +660,11 @@ axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1, 1))
 plot.finished(figure)
 
 # %% [markdown]
-# The first route is straight, and in truth it is a tunnel: more than 20 m below the top. With the hill in the map the
-# UAV flies over it, but the planner takes any free voxel, and so it skims the ground. Laws and neighbours want more,
-# and most laws have a ceiling, often 120 m above ground. All planners take `min_height` and `max_height`. They count
-# from the ground below the UAV, not from the start: the allowed band climbs over the hill. Start and goal may lie below
-# `min_height`; then the UAV takes off and lands vertically.
+# The first route is straight, and in truth it is a tunnel, up to 20.6 m below the ground. With the hill in the map the
+# UAV flies over it, but the planner takes any free voxel, and so it skims the ground: 1.4 m are left. Neighbours want
+# more, and laws have a ceiling, such as 120 m above ground in the European Union. All planners take `min_height` and
+# `max_height`. They count from the ground below the UAV, not from the start: the allowed band climbs over the hill.
+# Start and goal may lie below `min_height`; then the UAV takes off and lands vertically.
 #
 # The same in 3D, as the planner sees it, in voxels:
 

@@ -249,8 +249,8 @@ def test_a_line_along_the_face_of_an_obstacle_is_blocked_on_either_side(mirrored
             Route([(0.5, 0.5, 0.5), (0.5, 1.5, 0.5), (0.5, 4.5, 0.5)]),
             walled((0, 3, 0)),
             {},
-            r"route comes too near to an obstacle or a zone, too low or too high, between waypoints 1 \(0.5, 1.5, 0.5\) "
-            r"and 2 \(0.5, 4.5, 0.5\)",
+            r"route comes too near to an obstacle or a zone, too low or too high, between waypoints 1 "
+            r"\(0.5, 1.5, 0.5\) and 2 \(0.5, 4.5, 0.5\)",
         ),
         (Route([(0.5, 0.5, 0.5), (0.5, 9.5, 0.5)]), walled(), {}, "between waypoints 0 .* and 1"),
         (
