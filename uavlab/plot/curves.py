@@ -12,7 +12,17 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.plot.charts import finite_or_nan
 from uavlab.plot.ground import draw_cut
-from uavlab.plot.style import DPI, ROUTE_COLORS, check_drawn, draw_map, finished, label_of, level_of, plain, route_colors
+from uavlab.plot.style import (
+    DPI,
+    ROUTE_COLORS,
+    check_drawn,
+    draw_map,
+    finished,
+    label_of,
+    level_of,
+    plain,
+    route_colors,
+)
 from uavlab.route import Route
 from uavlab.spline import Curve
 from uavlab.spline.curve import BANK, CONTACT
