@@ -135,8 +135,8 @@ def test_geographic_raster_is_split_where_the_degrees_say():
     assert layer[20:] == pytest.approx(2, abs=1e-3)
     upright = [west, 2 * lat - north, east, north]
     layer = raster_layer(FIELD, [[1.0], [2.0]], upright, crs="EPSG:4326")
-    assert layer[:, :12] == pytest.approx(2, abs=1e-4)  # the second row lies in the south
-    assert layer[:, 12:] == pytest.approx(1, abs=1e-4)
+    assert layer[:, :12] == pytest.approx(2, abs=1e-3)  # the second row lies in the south
+    assert layer[:, 12:] == pytest.approx(1, abs=1e-3)
 
 
 def test_raster_that_doesnt_cover_the_city_is_refused_unless_there_is_a_fill():

@@ -1,13 +1,14 @@
 """Heights of the ground from files: ESRI ASCII grids and GeoTIFF."""
 
 import re
+import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from uavlab.city.place import LOCAL, system_of
-from uavlab.city.terrain import Terrain, filled_masks, pixels_and_edge
+from uavlab.city.place import LOCAL, UNITS, System, system_of
+from uavlab.city.terrain import Terrain, check_pixels, filled_masks, pixels_and_edge
 
 
 def read_terrain(path: str | Path, *, crs: Any = None) -> Terrain:
@@ -17,12 +18,14 @@ def read_terrain(path: str | Path, *, crs: Any = None) -> Terrain:
     ----------
     path : str or Path
     crs : anything that `uavlab.city.place.system_of` takes, optional
-        Its reference system; a GeoTIFF names its own. "local", or an .asc without crs: metres of the city.
+        Its reference system; a GeoTIFF names its own, an .asc in a .prj file of its name. "local", or an .asc without
+        any: metres of the city.
 
     Raises
     ------
     ValueError
-        If the file is broken, or a height is no height on Earth and not declared as no data.
+        If the file is broken or has over 25 million pixels, the system isn't known or can't be its own, or a height is
+        no height on Earth and not declared as no data.
     ImportError
         If a GeoTIFF is to be read without rasterio.
     """
@@ -55,7 +58,13 @@ def read_ascii_grid(path: Path, crs: Any) -> Terrain:
     absent = [name for name in (*sorted(needed), *corner) if name not in header]
     if absent:
         raise ValueError(f"{path.name} has no line {absent[0]!r} in its header: is it an ASCII grid of heights (.asc)?")
-    rows, columns = int(header["nrows"]), int(header["ncols"])
+    dx, dy = (header.get(name, header.get("cellsize", 0.0)) for name in ("dx", "dy"))
+    rows, columns = (whole_number(name, header[name], path) for name in ("nrows", "ncols"))
+    if not (0 < dx < np.inf and 0 < dy < np.inf):
+        raise ValueError(f"{path.name}: cellsize (or dx, dy) must be finite and above 0, got {min(dx, dy):g}")
+    if not np.isfinite([header[name] for name in corner]).all():
+        raise ValueError(f"{path.name}: {corner[0]} and {corner[1]} must be finite")
+    check_pixels(path.name, rows, columns)
     try:
         values = np.array(" ".join(lines[len(header) :]).split(), dtype=float)
     except ValueError:
@@ -63,14 +72,28 @@ def read_ascii_grid(path: Path, crs: Any) -> Terrain:
             for word in line.split():
                 number_in(word, path, number)
         raise
-    if rows < 1 or columns < 1 or len(values) != rows * columns:
+    if len(values) != rows * columns:
         raise ValueError(f"{path.name} must have {rows} × {columns} heights, as its header says, got {len(values)}")
     heights = values.reshape(rows, columns)
     heights[heights == header.get("nodata_value", -9999.0)] = np.nan
-    dx, dy = header.get("dx", header.get("cellsize", 0.0)), header.get("dy", header.get("cellsize", 0.0))
     west = header[corner[0]] - (dx / 2 if corner[0] == "xllcenter" else 0.0)
     south = header[corner[1]] - (dy / 2 if corner[1] == "yllcenter" else 0.0)
-    return Terrain.from_raster(heights, (west, south, west + columns * dx, south + rows * dy), crs=crs)
+    return Terrain.from_raster(
+        heights, (west, south, west + columns * dx, south + rows * dy), crs=system_beside(path) if crs is None else crs
+    )
+
+
+def system_beside(path: Path) -> System | None:
+    """The reference system in the .prj file of a grid, if there is one."""
+    beside = path.with_suffix(".prj")
+    return system_of(beside.read_text(errors="replace"), beside.name) if beside.exists() else None
+
+
+def whole_number(name: str, value: float, path: Path) -> int:
+    """A count in a header."""
+    if not (1 <= value < np.inf and value == int(value)):
+        raise ValueError(f"{path.name}: {name} must be a whole number of at least 1, got {value:g}")
+    return int(value)
 
 
 def number_in(word: str, path: Path, line: int) -> float:
@@ -82,24 +105,33 @@ def number_in(word: str, path: Path, line: int) -> float:
 
 
 def read_geotiff(path: Path, crs: Any) -> Terrain:
-    """A GeoTIFF with one band of heights; a turned one is as good."""
+    """A GeoTIFF with one band of heights, in their own unit and scale if they have one; a turned one is as good."""
     try:
         import rasterio
     except ImportError:
         raise ImportError(f'{path.name} is a GeoTIFF, which needs rasterio: pip install "uavlab[raster]"') from None
     try:
-        with rasterio.open(path) as file:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)  # refused below
+            file = rasterio.open(path)
+        with file:
             if file.count != 1:
                 raise ValueError(f"{path.name} has {file.count} bands, expected one, of heights")
-            heights = filled_masks("heights", file.read(1, masked=True).astype(float))
-            transform, declared = file.transform, file.crs
+            check_pixels(path.name, file.height, file.width)
+            heights = filled_masks(f"heights of {path.name}", file.read(1, masked=True))
+            heights = heights * file.scales[0] + file.offsets[0]
+            transform, declared, unit = file.transform, file.crs, file.units[0]
     except rasterio.errors.RasterioError as error:
         raise ValueError(f"{path.name} is no GeoTIFF that can be read: {error}") from None
+    if transform.is_identity or transform.is_degenerate:
+        raise ValueError(f"{path.name} doesn't say where it lies: use Terrain.from_raster(heights, bounds)")
     if crs is None and declared is None:
         raise ValueError(
             f"{path.name} names no reference system: give crs='EPSG:...', or crs='local' for the city's metres"
         )
-    system = None if isinstance(crs, str) and crs == LOCAL else system_of(crs or declared.to_wkt())
+    system = None if isinstance(crs, str) and crs == LOCAL else system_of(declared.to_wkt() if crs is None else crs)
+    if unit in UNITS:  # otherwise that of the system
+        heights = heights * (UNITS[unit] / (1.0 if system is None else system.height_factor))
     column = pixels_and_edge(0, heights.shape[1], heights.shape[1])
     row = pixels_and_edge(0, heights.shape[0], heights.shape[0])
     at = np.stack([*np.meshgrid(column, row), np.ones((len(row), len(column)))], axis=-1)

@@ -5,25 +5,34 @@ place, and how high at most in a column of voxels, whatever it came from. Where 
 as far as is known (linear in gaps, nearest beyond), or the map is refused there.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import Delaunay, QhullError, cKDTree
+from scipy.spatial import cKDTree
 
 from uavlab import checks
-from uavlab.city.place import LOCAL, Place, System, system_of
+from uavlab.city.columns import share_out
+from uavlab.city.place import LOCAL, Place, System, check_fits, system_of
 from uavlab.city.rasterise import range_of_ground, ranges_of
-from uavlab.compiled import compiled
+from uavlab.city.triangles import heights_of, rims_of, triangulated
 
 LOWEST, HIGHEST = -500.0, 9000.0
 """No ground on Earth is lower or higher [m]: such a number stands for "no data"."""
 
 BEYOND = ("refuse", "nearest")
-ROUNDING = 1e-9
+
+COVERED = 1 - 1e-6
+"""Share of a column from which on a surface covers it: the rest is rounding of coordinates."""
+
+FINEST = 0.01
+"""Pixels that are smaller [m] are ones in degrees."""
+
+MOST_PIXELS = 25_000_000
+"""A raster with more is refused: as a surface it would need more than 7 GB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +54,7 @@ class Terrain:
     Raises
     ------
     ValueError
-        If a shape is wrong, a point is not finite, or no number of a height on Earth.
+        If a shape is wrong, a point is not finite, no height on Earth, or not where the system is used.
     """
 
     points: np.ndarray
@@ -59,17 +68,17 @@ class Terrain:
             raise ValueError(f"points of a terrain must have shape (N, 3), at least one, got {points.shape}")
         if not np.isfinite(points).all():
             raise ValueError("points of a terrain must be finite: leave out what has no data")
-        triangles = checks.frozen(np.asarray(self.triangles).reshape(-1, 3), np.int64)
-        if len(triangles) and not 0 <= triangles.min() <= triangles.max() < len(points):
-            raise ValueError(f"triangles must be numbers of points, 0 to {len(points) - 1}, got {triangles.max()}")
-        heights = points[:, 2] * (1.0 if self.system is None else self.system.height_factor)
-        wrong = np.flatnonzero((heights < LOWEST) | (heights > HIGHEST))
-        if len(wrong):
-            raise ValueError(
-                f"points of a terrain must be heights on Earth, {LOWEST:g} to {HIGHEST:g} m, got "
-                f"{points[wrong[0], 2]:g}, {len(wrong)} times: if it stands for no data, make it NaN"
-            )
+        triangles = checked_triangles(self.triangles, len(points))
+        if self.system is None:  # counted from anywhere on Earth
+            check_heights(points[:, 2], LOWEST - HIGHEST, HIGHEST - LOWEST)
+        else:
+            check_heights(points[:, 2], LOWEST, HIGHEST, self.system.height_factor)
         checks.one_of("beyond", self.beyond, BEYOND)
+        if self.system is not None:
+            box = np.array([*points[:, :2].min(axis=0), *points[:, :2].max(axis=0)])
+            ranges = f"({box[0]:g}, {box[1]:g}) to ({box[2]:g}, {box[3]:g})"
+            in_degrees = bool((np.abs(box) <= [180, 90, 180, 90]).all())
+            check_fits(box, self.system, "terrain", ranges, in_degrees)
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "triangles", triangles)
 
@@ -87,25 +96,34 @@ class Terrain:
         bounds : (west, south, east, north)
             Of the whole raster, pixels' outer edges: in metres of the city, or in the coordinates of the system.
         crs : anything that `uavlab.city.place.system_of` takes, optional
-            The reference system of the bounds.
+            The reference system of the bounds. "local", or none: metres of the city.
         beyond : {"refuse", "nearest"}
             As for `Terrain`.
 
         Raises
         ------
         ValueError
-            If there are no heights, bounds are not in order, pyproj doesn't know the system, or a height is none.
+            If there are no heights or over 25 million, bounds are not in order or in degrees without a system, pyproj
+            doesn't know the system, or a height is none.
         """
         raster = filled_masks("heights", heights)
         if raster.ndim != 2 or raster.size == 0:
             raise ValueError(f"heights must have shape (rows, columns), got {raster.shape}")
+        check_pixels("heights", *raster.shape)
         edges = checks.numbers("bounds", bounds)
         if edges.shape != (4,) or not (np.isfinite(edges).all() and edges[0] < edges[2] and edges[1] < edges[3]):
             raise ValueError(f"bounds must be (west, south, east, north) in increasing order, got {bounds!r}")
         west, south, east, north = edges
+        pixel = max((east - west) / raster.shape[1], (north - south) / raster.shape[0])
+        if crs is None and pixel < FINEST:
+            raise ValueError(
+                f"bounds give pixels of {pixel:.2g} m, got {bounds!r}: in degrees they need crs='EPSG:4326' (plain "
+                "metres are crs='local')"
+            )
         x, y = pixels_and_edge(west, east, raster.shape[1]), pixels_and_edge(north, south, raster.shape[0])
         grid = np.stack([*np.meshgrid(x, y), np.pad(raster, 1, mode="edge")], axis=-1)
-        return cls.from_grid(grid, None if crs is None or crs == LOCAL else system_of(crs), beyond)
+        local = crs is None or (isinstance(crs, str) and crs == LOCAL)
+        return cls.from_grid(grid, None if local else system_of(crs), beyond)
 
     @classmethod
     def from_grid(cls, grid: np.ndarray, system: System | None = None, beyond: str = "refuse") -> "Terrain":
@@ -121,6 +139,7 @@ class Terrain:
         known = np.isfinite(points).all(axis=1)
         if not known.any():
             raise ValueError("heights have no data at all: every one is NaN or masked")
+        check_heights(points[known, 2], LOWEST, HIGHEST, 1.0 if system is None else system.height_factor)
         renumbered = np.cumsum(known) - 1
         return cls(points[known], renumbered[triangles[known[triangles].all(axis=1)]], system, beyond)
 
@@ -162,15 +181,21 @@ class Terrain:
         plan = checks.numbers("places", places)
         if plan.ndim != 2 or plan.shape[1] != 2 or not np.isfinite(plan).all():
             raise ValueError(f"places must be finite and have shape (N, 2), got {plan.shape}")
-        heights = heights_of(self.points[self.triangles], plan)
+        heights = heights_of(self.points, self.triangles, plan)
         missing = np.isnan(heights)
         if self.beyond == "nearest" and missing.any():
-            heights[missing] = heights_of(self.points[triangulated(self.points)], plan[missing])
+            heights[missing] = heights_of(self.points, self.bridges, plan[missing])
             missing = np.isnan(heights)
             if missing.any():
                 nearest = cKDTree(self.points[:, :2]).query(plan[missing])[1]
                 heights[missing] = self.points[nearest, 2]
         return heights
+
+    @cached_property
+    def bridges(self) -> np.ndarray:
+        """Triangles (G, 3) that join the rims of the surface and what points lie beside it, for its gaps."""
+        rims = rims_of(self.triangles, len(self.points))
+        return np.asarray(rims[triangulated(self.points[rims])])
 
 
 def ground_and_top(
@@ -188,22 +213,40 @@ def ground_and_top(
     x, y = (origin[axis] + cell * (np.arange(shape[axis]) + 0.5) for axis in range(2))
     centers = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     ground = terrain.heights_at(centers).reshape(shape[0], shape[1])
-    missing = np.argwhere(np.isnan(ground))
-    if len(missing):
-        i, j = missing[0]
+    top, covered = top_and_cover(terrain.points, terrain.triangles, origin, cell, shape)
+    gaps = np.isnan(ground) | (covered < COVERED)
+    if terrain.beyond == "refuse" and gaps.any():
+        i, j = np.argwhere(gaps)[0]
         low, high = terrain.points[:, :2].min(axis=0), terrain.points[:, :2].max(axis=0)
         raise ValueError(
-            f"terrain says nothing about {len(missing)} of the map's {ground.size} columns, the first is at "
-            f"({x[i]:.1f}, {y[j]:.1f}); it reaches over x {low[0]:.1f} to {high[0]:.1f}, y {low[1]:.1f} to "
+            f"terrain says nothing about {gaps.sum()} of the map's {ground.size} columns, or parts of them, the first "
+            f"is at ({x[i]:.1f}, {y[j]:.1f}); it reaches over x {low[0]:.1f} to {high[0]:.1f}, y {low[1]:.1f} to "
             f"{high[1]:.1f} m, the map over x {x[0] - cell / 2:.1f} to {x[-1] + cell / 2:.1f}, "
             f"y {y[0] - cell / 2:.1f} to {y[-1] + cell / 2:.1f} m: give a larger one, or terrain.filled(), which "
             "goes on beyond its edges and through holes"
         )
-    top = range_of_ground(ground)[1]
-    if len(terrain.triangles):
-        window, _, high = ranges_of(terrain.points[terrain.triangles], shape, cell, origin)
-        top[window] = np.maximum(top[window], high)
-    return ground, top
+    if gaps.any():
+        middle = terrain.points[terrain.bridges, :2].mean(axis=1)
+        over_gaps = np.isnan(heights_of(terrain.points, terrain.triangles, middle))
+        bridged, _ = top_and_cover(terrain.points, terrain.bridges[over_gaps], origin, cell, shape)
+        top[gaps] = np.maximum(top, bridged)[gaps]
+    return ground, np.maximum(top, range_of_ground(ground)[1])
+
+
+def top_and_cover(
+    points: np.ndarray, triangles: np.ndarray, origin: np.ndarray, cell: float, shape: Sequence[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Highest point of triangles (T, 3) in each column [m], and the share of it that they cover, (nx, ny) each."""
+    plan = (points[:, :2] - origin[:2]) / cell
+    sides = np.concatenate([plan <= 0, plan >= np.asarray(shape[:2])], axis=1) @ np.array([1, 2, 4, 8])
+    a, b, c = triangles.T
+    near = triangles[(sides[a] & sides[b] & sides[c]) == 0]  # the others lie beyond one side of the map
+    top, covered, unused = np.full(shape[:2], -np.inf), np.zeros(shape[:2]), np.zeros(shape[:2])
+    if len(near):
+        window, _, high = ranges_of(points[near], shape, cell, origin)
+        top[window] = high
+        share_out(plan[near], np.ones(len(near)), unused, covered)
+    return top, covered
 
 
 def pixels_and_edge(first: float, last: float, count: int) -> np.ndarray:
@@ -212,76 +255,45 @@ def pixels_and_edge(first: float, last: float, count: int) -> np.ndarray:
     return np.concatenate([[first], first + step * (np.arange(count) + 0.5), [last]])
 
 
+def check_heights(heights: np.ndarray, lowest: float, highest: float, unit: float = 1.0) -> None:
+    """Refuse numbers that can't be heights of the ground, between two limits [m]."""
+    wrong = heights[(heights * unit < lowest) | (heights * unit > highest)]
+    if len(wrong):
+        raise ValueError(
+            f"points of a terrain must be heights on Earth, {lowest:g} to {highest:g} m, got {wrong[0]:g}, "
+            f"{len(wrong)} times: if it stands for no data, declare it (in the file), or make it NaN"
+        )
+
+
+def check_pixels(name: str, rows: int, columns: int) -> None:
+    """Refuse a raster that would need more memory than computers have."""
+    if rows * columns > MOST_PIXELS:
+        raise ValueError(
+            f"{name} has {rows:,} × {columns:,} pixels, more than {MOST_PIXELS:,}: cut it to the city first, for "
+            "example with gdal_translate -projwin, or take every other pixel"
+        )
+
+
 def filled_masks(name: str, values: npt.ArrayLike) -> np.ndarray:
-    """Numbers as floats, NaN where they are masked."""
+    """Numbers as floats, NaN where they are masked; `ValueError` if one is infinite."""
     if isinstance(values, np.ma.MaskedArray):
-        return np.ma.filled(values.astype(float), np.nan)
-    return checks.numbers(name, values)
+        numbers = np.where(np.ma.getmaskarray(values), np.nan, checks.numbers(name, np.ma.getdata(values)))
+    else:
+        numbers = checks.numbers(name, values)
+    endless = np.count_nonzero(np.isinf(numbers))
+    if endless:
+        raise ValueError(f"{name} must not be infinite, {endless} are: make it NaN, or mask it, where there is no data")
+    return numbers
 
 
-def triangulated(points: np.ndarray) -> np.ndarray:
-    """Delaunay triangles (T, 3) of points (N, 3) in plan; none where fewer than three are not on a line."""
-    try:
-        return Delaunay(points[:, :2] - points[:, :2].mean(axis=0)).simplices
-    except (QhullError, ValueError):
-        return np.empty((0, 3), int)
-
-
-def heights_of(corners: np.ndarray, plan: np.ndarray) -> np.ndarray:
-    """Heights (N,) of triangles (T, 3, 3) at places (N, 2); NaN where there is none."""
-    heights = np.full(len(plan), np.nan)
-    if len(corners) and len(plan):
-        everything = np.concatenate([corners[..., :2].reshape(-1, 2), plan])
-        low, extent = everything.min(axis=0), float(np.ptp(everything, axis=0).max())
-        bins = max(min(int(math.sqrt(len(corners))), 1000), 1)
-        heights_in_bins(corners - [*low, 0.0], plan - low, max(extent, 1e-9) * (1 + 1e-9) / bins, bins, heights)
-    return heights
-
-
-@compiled
-def heights_in_bins(corners, places, width, bins, heights):
-    """Height of triangles (T, 3, 3) at places (N, 2), into `heights`, the highest where several are above each other.
-
-    Triangles are sorted into square bins by their bounding boxes, so that few are looked at for each place.
-    """
-    first = np.zeros(bins * bins + 1, np.int64)
-    ranges = np.empty((len(corners), 4), np.int64)
-    for t in range(len(corners)):
-        for axis in range(2):
-            least = min(corners[t, 0, axis], corners[t, 1, axis], corners[t, 2, axis])
-            most = max(corners[t, 0, axis], corners[t, 1, axis], corners[t, 2, axis])
-            ranges[t, axis] = min(max(math.floor(least / width), 0), bins - 1)
-            ranges[t, 2 + axis] = min(max(math.floor(most / width), 0), bins - 1)
-        for i in range(ranges[t, 0], ranges[t, 2] + 1):
-            for j in range(ranges[t, 1], ranges[t, 3] + 1):
-                first[i * bins + j + 1] += 1
-    first = np.cumsum(first)
-    members, filled = np.empty(first[-1], np.int64), first[:-1].copy()
-    for t in range(len(corners)):
-        for i in range(ranges[t, 0], ranges[t, 2] + 1):
-            for j in range(ranges[t, 1], ranges[t, 3] + 1):
-                members[filled[i * bins + j]] = t
-                filled[i * bins + j] += 1
-    for n in range(len(places)):
-        i, j = math.floor(places[n, 0] / width), math.floor(places[n, 1] / width)
-        if not (0 <= i < bins and 0 <= j < bins):
-            continue
-        for m in range(first[i * bins + j], first[i * bins + j + 1]):
-            height = height_in_triangle(corners[members[m]], places[n])
-            if not np.isnan(height) and not height <= heights[n]:
-                heights[n] = height
-
-
-@compiled
-def height_in_triangle(corners, place):
-    """Height of a triangle (3, 3) at a place in plan; NaN outside of it, or where it stands upright."""
-    ax, ay = corners[1, 0] - corners[0, 0], corners[1, 1] - corners[0, 1]
-    bx, by = corners[2, 0] - corners[0, 0], corners[2, 1] - corners[0, 1]
-    px, py = place[0] - corners[0, 0], place[1] - corners[0, 1]
-    twice = ax * by - ay * bx
-    if twice == 0:
-        return np.nan
-    u, v = (px * by - py * bx) / twice, (ax * py - ay * px) / twice
-    if u < -ROUNDING or v < -ROUNDING or u + v > 1 + ROUNDING:
-        return np.nan
-    return corners[0, 2] + u * (corners[1, 2] - corners[0, 2]) + v * (corners[2, 2] - corners[0, 2])
+def checked_triangles(triangles: npt.ArrayLike, count: int) -> np.ndarray:
+    """Triangles (T, 3) as numbers of points that there are."""
+    array = np.asarray(triangles)
+    if array.size == 0:
+        return checks.frozen(np.empty((0, 3)), np.int64)
+    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
+        raise ValueError(f"triangles must be whole numbers of shape (T, 3), got {array.dtype} of shape {array.shape}")
+    wrong = array[(array < 0) | (array >= count)]
+    if len(wrong):
+        raise ValueError(f"triangles must be numbers of points, 0 to {count - 1}, got {wrong[0]}")
+    return checks.frozen(array, np.int64)

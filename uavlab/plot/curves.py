@@ -81,7 +81,7 @@ def curve_profile(
 def corner(
     city: City, *curves: Curve, center: npt.ArrayLike, reach: float, diameter: float, route: Route | None = None
 ) -> Figure:
-    """Curves about a point from above, as wide as the body, and with their control points; obstacles at its height dark.
+    """Curves about a point from above, as wide as the body, with their control points; obstacles at its height dark.
 
     Where the body touches an obstacle the curve is drawn in thick orange.
 

@@ -105,7 +105,7 @@ def built_columns(city: City) -> np.ndarray:
 
 
 def cut_ground(city: City, k: int) -> np.ndarray:
-    """Which occupied voxels of a layer are ground, (nx, ny) bool: no building reaches into them, or they lie too low."""
+    """Which occupied voxels of a layer are ground, (nx, ny) bool: no building reaches into them, or they are too low."""
     if city.ground is None:
         return np.zeros(city.shape[:2], dtype=bool)
     level = city.coordinates(2)[k]
@@ -175,7 +175,7 @@ def zones_at(city: City, height: float | None = None) -> list[NoFlyZone]:
 
 
 def draw_zones(axes: Axes, city: City, height: float | None = None) -> None:
-    """Outlines of no-fly zones in plan, hatched, with one entry for the legend; at a height only those that reach it."""
+    """Outlines of no-fly zones in plan, hatched, with one entry in the legend; at a height those that reach it."""
     zones = zones_at(city, height)
     for number, polygon in enumerate(part for zone in zones for part in zone_polygons(city, zone)):
         rings = [Path(shapely.get_coordinates(ring), closed=True) for ring in (polygon.exterior, *polygon.interiors)]
@@ -199,6 +199,6 @@ def zone_surface(city: City) -> tuple[np.ndarray, np.ndarray]:
                 foot, head = (np.column_stack([corners, np.full(len(corners), z)]) for z in (low, high))
                 triangles.append(np.stack([foot[:-1], foot[1:], head[1:]], axis=1))
                 triangles.append(np.stack([foot[:-1], head[1:], head[:-1]], axis=1))
-                edges += [np.stack([a, b], axis=1).reshape(-1, 3)
-                          for a, b in ((foot[:-1], foot[1:]), (head[:-1], head[1:]), (foot[:-1], head[:-1]))]  # fmt: skip
+                ends = (foot[:-1], foot[1:]), (head[:-1], head[1:]), (foot[:-1], head[:-1])
+                edges += [np.stack(pair, axis=1).reshape(-1, 3) for pair in ends]
     return np.concatenate(triangles), np.concatenate(edges)
