@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import umsgpack
 
-from uavlab import scene
-from uavlab.city import Building, City
+from uavlab import plot, scene
+from uavlab.city import Building, City, NoFlyZone
 from uavlab.flight import OffsetProcess, Wind, fly
 from uavlab.planners import astar, repare, shortcut
 from uavlab.risk import RiskMap, reference_campus
@@ -107,7 +107,7 @@ def test_notebook_gets_the_page_and_a_still_picture(table1, route):
     ("arguments", "message"),
     [
         ({"expansion": True}, "expansion needs a first route planned with record=True"),
-        ({"safe_distance": 0.0}, "safe_distance must be the radius of a ball in metres, above 0, got 0.0"),
+        ({"safe_distance": 0.0}, "safe_distance must be finite and above 0, got 0"),
     ],
 )
 def test_wrong_question(table1, arguments, message):
@@ -235,3 +235,109 @@ def test_flights_that_are_none_are_refused(table1, route, crash_and_safe):
         scene.page(table1, flights=[route])
     with pytest.raises(ValueError, match="two animations"):
         scene.page(table1, route, expansion=True, flights=crash_and_safe)
+
+
+@pytest.fixture(scope="module")
+def hill():
+    """Ground that rises to 20 m in the middle, a house, and two no-fly zones."""
+    x, y = np.meshgrid(np.arange(30) - 14.5, np.arange(20) - 9.5, indexing="ij")
+    house = Building.prism([(12, 12), (24, 12), (24, 24), (12, 24)], 10)
+    zones = (
+        NoFlyZone([(70, 20), (90, 20), (90, 30)], 0.0, 20.0, name="<school>"),
+        NoFlyZone([(20, 50), (30, 50), (30, 60), (20, 60)], 10.0, name="church"),
+    )
+    grid, ground = np.zeros((30, 20, 15), dtype=bool), 20 * np.exp(-(x**2 + y**2) / 30)
+    return City(grid, 4.0, buildings=(house,), name="hill", ground=ground, no_fly=zones)
+
+
+def test_ground_is_one_mesh_at_its_heights_with_a_grid_on_it(hill):
+    commands = commands_of(scene.page(hill))
+    ground = commands["/meshcat/ground", "set_object"]
+    vertices = vertices_of(ground)
+    assert len(vertices) == 31 * 21
+    assert np.abs(hill.height_above_ground(vertices)).max() <= 1 / 512
+    assert ground["object"]["materials"][0]["type"] == "MeshLambertMaterial"
+    lines = vertices_of(commands["/meshcat/grid", "set_object"])
+    lift = 0.002 * np.hypot(120, 80)
+    assert hill.height_above_ground(lines) == pytest.approx(np.full(len(lines), lift), abs=1e-4)
+    assert len(lines) > 2 * 20 * 5
+    assert "ground at z = 0 to 20 m" in scene.page(hill)
+
+
+def test_large_ground_is_thinned_out():
+    ground = np.random.default_rng(1).uniform(0, 20, (500, 300))
+    city = City(np.zeros((500, 300, 30), dtype=bool), 1.0, ground=ground)
+    page = scene.page(city)
+    assert len(vertices_of(commands_of(page)["/meshcat/ground", "set_object"])) == (plot.MOST_QUADS + 1) ** 2
+    assert len(page) < 650_000
+
+
+def test_risk_is_painted_on_the_ground_in_place_of_it(hill):
+    commands = commands_of(scene.page(hill, risk=RiskMap(hill, 1e-3, 0.5), slice_height=np.int64(30)))
+    painted = vertices_of(commands["/meshcat/risk/ground", "set_object"])
+    assert hill.height_above_ground(painted) == pytest.approx(np.full(len(painted), 0.04), abs=1e-4)
+    assert np.ptp(painted[:, 2]) > 15
+    assert ("/meshcat/ground", "set_object") not in commands
+    assert np.allclose(vertices_of(commands["/meshcat/risk/slice", "set_object"])[:, 2], 30.0)
+
+
+def test_no_fly_zones_are_one_mesh_to_look_through_and_one_line_of_the_legend(hill):
+    page = scene.page(hill)
+    commands = commands_of(page)
+    walls = commands["/meshcat/no_fly/walls", "set_object"]
+    material = walls["object"]["materials"][0]
+    assert (material["transparent"], material["depthWrite"]) == (True, False)
+    assert material["opacity"] < 0.5
+    vertices = vertices_of(walls)
+    assert vertices.min(axis=0)[:2] == pytest.approx([20, 20])
+    assert vertices.max(axis=0) == pytest.approx([90, 60, 60])  # the church's zone has no upper limit
+    assert page.count("no-fly zones: &lt;school&gt;, church") == 1
+    assert plot.ZONE_COLOR not in plot.route_colors(6)
+    assert "no-fly" not in scene.page(City(hill.occupied, 4.0))
+
+
+def test_far_off_maps_are_drawn_as_exactly_as_near_ones(crash_and_safe):
+    """float32 has steps of half a metre at 5 000 km."""
+
+    def town(shift):
+        house = Building.prism(np.array([(5.2, 10.1), (30.3, 10.1), (30.3, 40.7)]) + shift[:2], 12.3)
+        zone = NoFlyZone(np.array([(50.1, 50.3), (60, 50), (60, 60)]) + shift[:2])
+        ground = np.linspace(0, 3, 100).reshape(10, 10)
+        grid = np.zeros((10, 10, 8), dtype=bool)
+        return City(grid, 8.0, np.asarray(shift), (house,), ground=ground, no_fly=(zone,))
+
+    shift = np.array([3_000_000.0, 5_000_000.0, 0.0])
+    route = Route(np.array([[2.2, 2.3, 20.1], [40.4, 70.7, 30.3]]))
+    near = commands_of(scene.page(town(0 * shift), route, safe_distance=2.0))
+    far = commands_of(scene.page(town(shift), Route(route.points + shift), safe_distance=2.0))
+    assert near.keys() == far.keys()
+    for path, kind in near:
+        if kind == "set_object" and "attributes" in near[path, kind]["object"]["geometries"][0].get("data", {}):
+            assert vertices_of(far[path, kind]) == pytest.approx(vertices_of(near[path, kind]), abs=2e-5), path
+        elif kind == "set_transform":
+            assert far[path, kind]["matrix"] == pytest.approx(near[path, kind]["matrix"], abs=1e-6), path
+    places = [keys_of(commands, "/meshcat/uav", ".position")[1] for commands in (near, far)]
+    assert np.allclose(*places, atol=1e-6)
+
+
+def test_route_that_stays_where_it_is_can_be_drawn(table1):
+    hover = Route([(1, 1, 1), (1, 1, 1)])
+    commands = commands_of(scene.page(table1, hover))
+    assert ("/meshcat/route0/start", "set_object") in commands
+    assert ("/meshcat/route0/tube", "set_object") not in commands
+    assert scene.show(table1, hover).still
+    assert len(plot.stills.ribbons(np.array([[0.0, 0, 0], [0, 0, 0], [1, 0, 0]]), 0.1)) == 4
+
+
+@pytest.mark.parametrize("kind", [np.int64, np.float32, int])
+def test_safe_distance_of_any_kind_of_number(table1, route, kind):
+    assert scene.page(table1, route, safe_distance=kind(3)) == scene.page(table1, route, safe_distance=3.0)
+    for wrong in (kind(0), np.inf, np.nan, "3"):
+        with pytest.raises(ValueError, match="safe_distance must be"):
+            scene.page(table1, route, safe_distance=wrong)
+
+
+def test_names_may_look_like_tex(table1, route):
+    page = scene.page(table1, Route(route.points, r"$\foo$"))
+    assert r"$\foo$: " in page
+    assert scene.show(table1, Route(route.points, r"$\foo$")).still

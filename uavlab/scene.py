@@ -268,7 +268,9 @@ def grid_spacing(city: City) -> float:
 def draw_city(scene: meshcat.Visualizer, city: City) -> None:
     """All buildings as one mesh with their colours, and their edges as lines."""
     if not city.buildings:
-        scene["voxels"].set_object(mesh(nearby(city, plot.voxel_surface(city))), g.MeshLambertMaterial(color=0xB0C4DE))
+        surface = nearby(city, plot.voxel_surface(city))
+        if len(surface):
+            scene["voxels"].set_object(mesh(surface), g.MeshLambertMaterial(color=0xB0C4DE))
         return
     surfaces = [building.triangles() for building in city.buildings]
     colors = [

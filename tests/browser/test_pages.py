@@ -3,11 +3,12 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from pictures import shades_of_hue, share_of_hue
 
 from uavlab import plot, scene
-from uavlab.city import City, table1_city
+from uavlab.city import City, NoFlyZone, table1_city
 from uavlab.planners import astar
 
 
@@ -81,3 +82,20 @@ def test_city_without_buildings_is_drawn_from_its_voxels(page, tmp_path, picture
     page.goto(path.as_uri())
     wait_until_drawn(page)
     assert share_of_hue(picture_of(page), "lightsteelblue") > 0.05
+
+
+def test_hill_and_no_fly_zone_are_seen(page, tmp_path, picture_of):
+    x, y = np.meshgrid(np.arange(50) - 24.5, np.arange(30) - 14.5, indexing="ij")
+    ground = 35 * np.exp(-(x**2 + y**2) / 75)
+    zone = NoFlyZone([(20, 20), (50, 20), (50, 40), (20, 40)], 0, 40, name="school")
+    city = City(np.zeros((50, 30, 20), dtype=bool), 4.0, ground=ground, no_fly=(zone,))
+    path = tmp_path / "scene.html"
+    path.write_text(scene.page(city), encoding="utf-8")
+    page.goto(path.as_uri())
+    wait_until_drawn(page)
+    picture = picture_of(page)
+    assert share_of_hue(picture, plot.ZONE_COLOR) > 0.01
+    middle = picture[200:560, 250:800]  # the ground: grey, its slopes in light and in shade
+    grey = middle[np.ptp(middle, axis=-1) < 0.08].mean(axis=-1)
+    assert np.quantile(grey, 0.95) - np.quantile(grey, 0.05) > 0.15
+    assert "no-fly zone: school" in page.locator("#legend").inner_text()

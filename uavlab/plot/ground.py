@@ -26,27 +26,31 @@ ZONE_COLOR = "#882255"
 """Of no-fly zones; no route has it."""
 LEVEL = 0.01
 """Ground whose heights differ by less is level [m]."""
-MOST_QUADS = 200
-"""Along each side of a terrain that is drawn; a finer one is thinned out."""
+MOST_QUADS = 128
+"""Along each side of a terrain in a scene; a finer one is thinned out, so that its page stays small."""
+
+
+def extent_of_ground(city: City) -> tuple[float, float]:
+    """Lowest and highest z of the ground [m]; without terrain the bottom of the map."""
+    lowest, highest = city.range_of_ground
+    return float(lowest.min()), float(highest.max())
 
 
 def datum_of(city: City) -> float | None:
     """Height z [m] of level ground, from which figures count heights; None where the ground isn't level."""
-    if city.ground is None:
-        return float(city.origin[2])
-    return float(city.ground.mean()) if np.ptp(city.ground) < LEVEL else None
+    low, high = extent_of_ground(city)
+    return low if high - low < LEVEL else None
 
 
 def height_words(city: City, height: float) -> str:
     """A height z [m] of the map in words that say above what it is."""
-    datum = datum_of(city)
-    if datum is not None:
-        return f"{round(height - datum, 6):g} m above the ground"
-    least, most = (round(float(height - ground)) for ground in (city.ground.max(), city.ground.min()))  # type: ignore[union-attr]
-    if most <= 0:
+    low, high = extent_of_ground(city)
+    if datum_of(city) is not None:
+        return f"{round(height - low, 6):g} m above the ground"
+    if height <= low:
         return f"z = {height:g} m, below the ground"
-    above = f"{least} to {most}" if least >= 0 else f"up to {most}"
-    return f"z = {height:g} m, {above} m above the ground"
+    above = f"{round(height - high)} to" if height >= high else "up to"
+    return f"z = {height:g} m, {above} {round(height - low)} m above the ground"
 
 
 def height_label(city: City) -> str:
@@ -56,9 +60,8 @@ def height_label(city: City) -> str:
 
 def ground_words(city: City) -> str:
     """From where to where the ground of a map reaches; empty where it is level."""
-    if city.ground is None or datum_of(city) is not None:
-        return ""
-    return f"ground at z = {city.ground.min():.0f} to {city.ground.max():.0f} m"
+    low, high = extent_of_ground(city)
+    return f"ground at z = {round(low)} to {round(high)} m" if datum_of(city) is None else ""
 
 
 def title_of(city: City, height: float, dark: str) -> str:
@@ -94,18 +97,23 @@ def lattice_triangles(shape: Sequence[int]) -> np.ndarray:
     return np.stack([quads[corner] for corner in (0, 1, 2, 0, 2, 3)], axis=-1).reshape(-1, 3)
 
 
+def voxels_above_ground(city: City) -> np.ndarray:
+    """Occupied voxels that the ground doesn't reach into, (nx, ny, nz) bool."""
+    if city.ground is None:
+        return city.occupied
+    bottoms = city.coordinates(2) - city.cell / 2
+    return city.occupied & (bottoms >= city.range_of_ground[1][..., None] - TOUCH)
+
+
 def built_columns(city: City) -> np.ndarray:
     """Columns with a building in them, (nx, ny) bool: with ground, all have something that is occupied."""
-    if city.ground is None:
-        return city.occupied.any(axis=2)
-    if not city.buildings:
-        bottoms = city.coordinates(2) - city.cell / 2
-        return (city.occupied & (bottoms >= city.range_of_ground[1][..., None] - TOUCH)).any(axis=2)
-    return np.logical_or.reduce([touches(b, city.shape, city.cell, city.origin) for b in city.buildings])
+    if city.ground is None or not city.buildings:
+        return np.any(voxels_above_ground(city), axis=2)
+    return np.any([touches(building, city.shape, city.cell, city.origin) for building in city.buildings], axis=0)
 
 
 def cut_ground(city: City, k: int) -> np.ndarray:
-    """Which occupied voxels of a layer are ground, (nx, ny) bool: no building reaches into them, or they are too low."""
+    """Which occupied voxels of a layer are ground, (nx, ny) bool: those without a building, or that lie too low."""
     if city.ground is None:
         return np.zeros(city.shape[:2], dtype=bool)
     level = city.coordinates(2)[k]
@@ -142,7 +150,7 @@ def draw_contours(axes: Axes, city: City) -> None:
     """Lines of equal height of the ground at round heights z, where it isn't level, with their heights [m]."""
     if datum_of(city) is not None or min(city.shape[:2]) < 2:
         return
-    points = ground_lattice(city)
+    points = ground_lattice(city, 4 * MOST_QUADS)
     levels = MaxNLocator(8).tick_values(points[..., 2].min(), points[..., 2].max())
     lines = axes.contour(*points.T, levels=levels, colors=CUT_COLOR, linewidths=0.8, alpha=0.7)
     axes.clabel(lines, fontsize=7, fmt="%g")

@@ -22,6 +22,7 @@ from uavlab.plot.ground import (
     built_columns,
     ground_lattice,
     lattice_triangles,
+    voxels_above_ground,
     zone_label,
     zone_surface,
     zones_at,
@@ -158,14 +159,18 @@ def layer_triangles(city: City, height: npt.ArrayLike) -> np.ndarray:
 
 
 def voxel_surface(city: City) -> np.ndarray:
-    """Triangles (T, 3, 3) [m] between occupied voxels and free ones or the border; rows of faces are one rectangle."""
-    padded = np.pad(city.occupied, 1)
+    """Triangles (T, 3, 3) [m] between occupied voxels and free ones or the border; rows of faces are one rectangle.
+
+    Where the city has ground, what it reaches into is left out.
+    """
+    occupied = voxels_above_ground(city)
+    padded = np.pad(occupied, 1)
     triangles = []
     for axis in range(3):
         across, along = sorted({0, 1, 2} - {axis})
         for side in (0, 1):
             beyond = np.roll(padded, 1 - 2 * side, axis=axis)[1:-1, 1:-1, 1:-1]
-            exposed = np.moveaxis(city.occupied & ~beyond, along, -1)
+            exposed = np.moveaxis(occupied & ~beyond, along, -1)
             steps = np.diff(exposed.astype(np.int8), axis=-1, prepend=0, append=0)
             first, last = np.argwhere(steps == 1), np.argwhere(steps == -1)  # of each row: same order, so they pair up
             corner, extent = np.zeros((2, len(first), 3))
@@ -185,7 +190,8 @@ def city_surface(city: City) -> list[tuple[np.ndarray, str]]:
     """Triangles and colour of each building, or of all voxels where the city knows no buildings."""
     if city.buildings:
         return [(building.triangles(), building.color) for building in city.buildings]
-    return [(voxel_surface(city), "lightsteelblue")] if city.occupied.any() else []
+    surface = voxel_surface(city)
+    return [(surface, "lightsteelblue")] if len(surface) else []
 
 
 def subdivided(triangles: np.ndarray, longest: float) -> np.ndarray:
@@ -205,6 +211,8 @@ def subdivided(triangles: np.ndarray, longest: float) -> np.ndarray:
 def ribbons(points: np.ndarray, width: float) -> np.ndarray:
     """Triangles of two crossed ribbons along a polyline: a line that has a depth of its own."""
     start, end = points[:-1], points[1:]
+    moved = (start != end).any(axis=1)
+    start, end = start[moved], end[moved]
     along = end - start
     across = np.cross(along, [0.0, 0.0, 1.0])
     across[np.linalg.norm(across, axis=1) < 1e-9] = [1.0, 0.0, 0.0]
