@@ -248,8 +248,25 @@ def test_still_shows_the_hill_and_the_zones_with_one_entry_each(hill, over):
     land = tones[np.ptp(tones, axis=1) < 0.1]  # houses are blue
     assert len(land) == 2 * 50 * 30
     assert np.ptp(land[:, 0]) > 0.3  # a slope in the light and one in the shade
-    painted = plot.still(hill, risk=RiskMap(hill, 1e-3, 0.5)).axes[0]
-    assert painted.collections
+    painted = plot.still(bare, risk=RiskMap(bare, 1e-3, 0.5)).axes[0].collections
+    tones = np.concatenate([drawn.get_facecolor() for drawn in painted])
+    assert len(tones) == len(np.concatenate([d.get_facecolor() for d in plot.still(bare).axes[0].collections]))
+    first, rest = painted  # what is beside houses, and what a hill may hide
+    assert 0 < len(first.get_facecolor()) < 2 * 50 * 30 < len(rest.get_facecolor())
+
+
+def test_bare_ground_can_be_drawn(hill):
+    bare = City(np.zeros((9, 1, 5), dtype=bool), 2.0, ground=np.linspace(0, 4, 9)[:, None])
+    for city in (bare, City(np.zeros((9, 9, 5), dtype=bool), 2.0, ground=np.ones((9, 9)))):
+        risk = RiskMap(city, 1e-3, 0.5)
+        for figure in (
+            plot.still(city),
+            plot.still(city, risk=risk),
+            plot.plan(city),
+            plot.section(city, 3.0),
+            plot.risk(risk, 3.0),
+        ):
+            figure.canvas.draw()
 
 
 @pytest.mark.parametrize("name", [r"$\foo$", "$x", "_x", "_$\\foo$_"])

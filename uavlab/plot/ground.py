@@ -147,11 +147,12 @@ def hatch(axes: Axes, city: City, columns: np.ndarray, pattern: str, color: str 
 
 
 def draw_contours(axes: Axes, city: City) -> None:
-    """Lines of equal height of the ground at round heights z, where it isn't level, with their heights [m]."""
-    if datum_of(city) is not None or min(city.shape[:2]) < 2:
+    """Lines of equal height of the ground at whole metres z, with their heights, where it rises by more than one."""
+    low, high = extent_of_ground(city)
+    if high - low < 1.0 or min(city.shape[:2]) < 2:
         return
     points = ground_lattice(city, 4 * MOST_QUADS)
-    levels = MaxNLocator(8).tick_values(points[..., 2].min(), points[..., 2].max())
+    levels = MaxNLocator(8, integer=True).tick_values(low, high)
     lines = axes.contour(*points.T, levels=levels, colors=CUT_COLOR, linewidths=0.8, alpha=0.7)
     axes.clabel(lines, fontsize=7, fmt="%g")
     axes.plot([], [], color=CUT_COLOR, linewidth=0.8, alpha=0.7, label="height z of the ground [m]")

@@ -69,15 +69,17 @@ def still(
         pieces = subdivided(triangles, longest / (14 if city.ground is None else 40))  # small ones meet a slope evenly
         polygons.append(pieces)
         colors.append((0.75 + 0.25 * sunlight(pieces))[:, None] * to_rgb(color))
-    if city.ground is not None and risk is None:
-        land, below = land_triangles(city)
-        tones = np.clip(1.0 + 0.6 * (sunlight(land) - SUN[2]), 0.0, 1.0)[:, None] * to_rgb(LAND_COLOR)
+    norm = paint = None
+    if risk is not None:
+        norm = risk_norm(risk)
+        paint = np.repeat(SEQUENTIAL(norm(ground_risk(risk).ravel()))[:, :3], 2, axis=0)
+    if city.ground is not None or paint is not None:
+        land, tones, below = drawn_land(city, paint)
         polygons.append(land[~below])
         colors.append(tones[~below])
         if below.any():
-            axes.add_collection3d(
-                Poly3DCollection(land[below], facecolors=tones[below], edgecolors=tones[below], lw=0.3, zorder=0)
-            )
+            tones = tones[below]
+            axes.add_collection3d(Poly3DCollection(land[below], facecolors=tones, edgecolors=tones, lw=0.3, zorder=0))
     zones = zones_at(city)
     if zones:
         walls, edges = zone_surface(city)
@@ -98,22 +100,12 @@ def still(
         if flight.outcome == "crashed":
             for arm in cross(flight.position[-1], longest / 30):
                 axes.plot(*arm.T, color=CRASH_COLOR, linewidth=3.5, zorder=10)
-    if risk is not None:
-        norm = risk_norm(risk)
-        paint = np.repeat(SEQUENTIAL(norm(ground_risk(risk).ravel())), 2, axis=0)
-        ground = layer_triangles(city, low[2] if city.ground is None else ground_lattice(city, max(city.shape))[..., 2])
-        if city.ground is None:
-            axes.add_collection3d(
-                Poly3DCollection(ground.reshape(-1, 3, 3), facecolors=paint, edgecolors=paint, lw=0.3, zorder=0)
-            )
-        else:  # a hill hides what is behind it
-            polygons.append(ground.reshape(-1, 3, 3))
-            colors.append(paint[:, :3])
+    if norm is not None:
         bar = figure.add_axes((0.08, 0.1, 0.24, 0.025))
         figure.colorbar(ScalarMappable(norm, SEQUENTIAL), cax=bar, orientation="horizontal").set_label(
             RISK_LABEL, fontsize=8
         )
-    if polygons:
+    if sum(map(len, polygons)):
         faces = np.concatenate(colors)
         axes.add_collection3d(Poly3DCollection(np.concatenate(polygons), facecolors=faces, edgecolors=faces, lw=0.3))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
@@ -126,14 +118,21 @@ def still(
     return finished(figure)
 
 
-def land_triangles(city: City) -> tuple[np.ndarray, np.ndarray]:
-    """The ground as triangles (T, 3, 3) [m], and which of them reach below a building, where it hides them."""
-    lattice = ground_lattice(city, LAND_QUADS)
-    triangles = lattice.reshape(-1, 3)[lattice_triangles(lattice.shape[:2])]
-    reach = -(-max(city.shape[:2]) // LAND_QUADS)
-    built = maximum_filter(built_columns(city), 2 * reach + 1)
-    i, j, _ = city.cell_of(triangles.mean(axis=1)).T
-    return triangles, built[i, j]
+def drawn_land(city: City, paint: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The ground as triangles (T, 3, 3) [m], their colours (T, 3), and which of them are to be drawn first.
+
+    Those are below buildings or beside them, where they would be taken for nearer than a wall; level ground hides
+    nothing at all.
+    """
+    lattice = ground_lattice(city, LAND_QUADS if paint is None else max(city.shape))
+    land = lattice.reshape(-1, 3)[lattice_triangles(lattice.shape[:2])]
+    below = np.ones(len(land), dtype=bool)
+    if city.ground is not None:
+        reach = -(-max(city.shape[:2]) // LAND_QUADS)
+        i, j, _ = city.cell_of(land.mean(axis=1)).T
+        below = maximum_filter(built_columns(city), 2 * reach + 1)[i, j]
+    light = np.clip(1.0 + 0.6 * (sunlight(land) - SUN[2]), 0.0, 1.0)
+    return land, light[:, None] * to_rgb(LAND_COLOR) if paint is None else paint, below
 
 
 def sunlight(triangles: np.ndarray) -> np.ndarray:
