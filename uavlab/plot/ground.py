@@ -101,11 +101,11 @@ def built_columns(city: City) -> np.ndarray:
     if not city.buildings:
         bottoms = city.coordinates(2) - city.cell / 2
         return (city.occupied & (bottoms >= city.range_of_ground[1][..., None] - TOUCH)).any(axis=2)
-    return np.logical_or.reduce([touches(b, city.shape, city.cell, city.origin) for b in city.buildings])
+    return np.any([touches(b, city.shape, city.cell, city.origin) for b in city.buildings], axis=0)
 
 
 def cut_ground(city: City, k: int) -> np.ndarray:
-    """Which occupied voxels of a layer are ground, (nx, ny) bool: no building reaches into them, or they are too low."""
+    """Which occupied voxels of a layer are ground, (nx, ny) bool: no building reaches in, or they are too low."""
     if city.ground is None:
         return np.zeros(city.shape[:2], dtype=bool)
     level = city.coordinates(2)[k]
