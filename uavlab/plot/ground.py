@@ -101,7 +101,7 @@ def built_columns(city: City) -> np.ndarray:
     if not city.buildings:
         bottoms = city.coordinates(2) - city.cell / 2
         return (city.occupied & (bottoms >= city.range_of_ground[1][..., None] - TOUCH)).any(axis=2)
-    return np.any([touches(b, city.shape, city.cell, city.origin) for b in city.buildings], axis=0)
+    return np.asarray(np.any([touches(b, city.shape, city.cell, city.origin) for b in city.buildings], axis=0))
 
 
 def cut_ground(city: City, k: int) -> np.ndarray:
