@@ -97,11 +97,12 @@ def lattice_triangles(shape: Sequence[int]) -> np.ndarray:
 def built_columns(city: City) -> np.ndarray:
     """Columns with a building in them, (nx, ny) bool: with ground, all have something that is occupied."""
     if city.ground is None:
-        return city.occupied.any(axis=2)
+        return np.asarray(city.occupied.any(axis=2))
     if not city.buildings:
         bottoms = city.coordinates(2) - city.cell / 2
-        return (city.occupied & (bottoms >= city.range_of_ground[1][..., None] - TOUCH)).any(axis=2)
-    return np.asarray(np.any([touches(b, city.shape, city.cell, city.origin) for b in city.buildings], axis=0))
+        above = city.occupied & (bottoms >= city.range_of_ground[1][..., None] - TOUCH)
+        return np.asarray(above.any(axis=2))
+    return np.array(np.any([touches(b, city.shape, city.cell, city.origin) for b in city.buildings], axis=0))
 
 
 def cut_ground(city: City, k: int) -> np.ndarray:
