@@ -320,9 +320,9 @@ def test_an_error_within_a_run_says_in_which():
 
 @pytest.fixture(scope="module")
 def raced():
-    """Two planners on two campuses of 15 × 15 × 8 voxels, from and to where campuses are planned."""
+    """Two planners on two campuses of 20 × 20 × 11 voxels, from and to where campuses are planned."""
     planners = {"ants": ant_colony, "swarm": functools.partial(waypoint_swarm, optimizer="pso_bas", arcs=50)}
-    maps = [random_campus(seed, cell=10.0) for seed in range(2)]
+    maps = [random_campus(seed, cell=7.5) for seed in range(2)]
     return compare_planners(planners, maps, seeds=range(3), budget=400, progress=False)
 
 
@@ -340,7 +340,7 @@ def test_real_planners_walk_as_far_as_the_budget_and_their_histories_end_at_thei
 
 
 def test_real_runs_are_those_of_the_planners_alone(raced):
-    campus = random_campus(1, cell=10.0)
+    campus = random_campus(1, cell=7.5)
     start, goal = raced.exact[1].points[[0, -1]]
     alone = ant_colony(campus, start, goal, rng=2, budget=400)
     assert optimality_gap(alone, least_risk(campus, start, goal)) == pytest.approx(raced.gaps[0, 1, 2], abs=1e-12)
