@@ -176,9 +176,8 @@ def draw_below(axes: Axes, city: City, drawn: Sequence[tuple[Route, str]], zero:
     lowest = min(0.0, *(float(ground.min()) for ground in grounds))
     name = "ground" if len(ways) == 1 else f"ground below {plain(drawn[0][0].planner)}"
     axes.fill_between(ways[0][0].distance, lowest, grounds[0], color=CUT_COLOR, linewidth=0, alpha=0.75, label=name)
-    for (way, color), ground in zip(ways, grounds, strict=True):
-        tops = np.maximum(tops_below(city, way.points) - zero, ground)
-        axes.plot(way.distance, tops, color=color, linewidth=0.8, linestyle=":")
+    for way, color in ways:
+        axes.plot(way.distance, tops_below(city, way.points) - zero, color=color, linewidth=0.8, linestyle=":")
     axes.plot([], [], color="0.3", linewidth=0.8, linestyle=":", label="occupied voxels below")
     return lowest
 
