@@ -62,7 +62,7 @@ def test_section_tells_the_ground_from_buildings(hill, over):
     assert cut[hill.ground > level].all()
     assert not cut[hill.ground < level - 8].any()
     assert np.array_equal(cut | house, hill.occupied[:, :, 6] | house)
-    assert brown(plot.section(hill, 9.0).axes[0])[house].all()  # its cellar lies in the hill
+    assert brown(plot.section(hill, 1.0).axes[0])[house].all()  # its cellar lies in the hill
     assert axes.get_title() == "hill, z = 21 m, up to 21 m above the ground\n(buildings black, ground brown)"
     hatched = [drawn for drawn in axes.collections if getattr(drawn, "hatches", None)]
     assert hatched  # told apart from black without colours, too
