@@ -75,10 +75,10 @@ def report(
     from uavlab import plot, scene
 
     drawn = routes if trial.curve is None else [trial.curve.route(city.cell), *routes[1:]]
-    clearance = conditions.clearance
+    ball = conditions.clearance if conditions.clearance > 0 else None
     picture = io.BytesIO()
     with rc_context({"svg.hashsalt": "uavlab"}):  # same question, same bytes
-        profile = plot.profile(city, *drawn, safe_distance=clearance)
+        profile = plot.profile(city, *drawn, safe_distance=ball)
         profile.savefig(picture, format="svg", metadata={"Date": None})
     drawing = base64.b64encode(picture.getvalue()).decode()
     measured = conditions_table(conditions) + table(city, routes[0], start, goal)
@@ -86,7 +86,6 @@ def report(
         measured += risk_table(risk_map, routes, trial.curve)
     measured += trial_table(trial, conditions)
     rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in measured)
-    ball = clearance if clearance > 0 else None
     flights = {} if trial.flight is None else {f"{drawn[0].planner}, flown in these gusts": trial.flight}
     shown = drawn[1:] if flights else drawn  # the track covers its curve
     read = "" if city.source is None else f"<h2>What was read</h2>{city.source._repr_html_()}"
