@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from uavlab.city import Building, City
 from uavlab.city.place import Place
+from uavlab.city.terrain import Terrain
 from uavlab.risk import POPULATION_DENSITY, RiskMap, raster_layer, road_layer, shelter_layer, vehicle_share
 from uavlab.risk.layers import column_centers
 
@@ -136,7 +137,7 @@ def test_geographic_raster_is_split_where_the_degrees_say():
     upright = [west, 2 * lat - north, east, north]
     layer = raster_layer(FIELD, [[1.0], [2.0]], upright, crs="EPSG:4326")
     assert layer[:, :12] == pytest.approx(2, abs=1e-3)  # the second row lies in the south
-    assert layer[:, 12:] == pytest.approx(1, abs=1e-3)
+    assert layer[:, 12:] == pytest.approx(1, abs=1e-3)  # a parallel bends away by 1 mm, of a column of 2.5 m
 
 
 def test_raster_that_doesnt_cover_the_city_is_refused_unless_there_is_a_fill():
@@ -264,6 +265,19 @@ def test_a_road_ends_where_its_line_ends_though_it_turns_back():
     assert (layer[26:] == 0).all()  # beyond x = 65
 
 
+def test_shelter_on_a_hill_goes_by_heights_above_the_ground():
+    hill = Terrain.from_raster([[40.0, 40.0], [40.0, 40.0]], (-1, -1, 61, 31))
+    houses = [square(10, 10, 46.0, 40.0), square(40, 10, 52.0, 40.0)]
+    town = City.from_buildings(houses, cell=2.5, origin=(0, 0, 35), size=(60, 30, 40), terrain=hill)
+    layer = shelter_layer(town, 0.25)
+    assert layer[6, 6] == 0.5
+    assert layer[18, 6] == 0.75
+    assert layer[0, 0] == 0.25
+    slope = Terrain.from_raster(np.tile(np.arange(0.5, 31, 1.0), (2, 1)), (0, 0, 62, 31))  # half as high as long
+    bare = City.from_buildings([], cell=2.5, origin=(0, 0, -5), size=(60, 30, 50), terrain=slope)
+    assert (shelter_layer(bare, 0.25) == 0.25).all()
+
+
 def test_cars_and_lanes_set_the_share():
     layer = road_layer(FIELD, [[(0, 37.5), (100, 37.5)]], 15.0, cars_per_km=20.0, lane_width=3.5)
     assert layer.max() == pytest.approx(8.4 * 20 / 1000 / 3.5)
@@ -359,6 +373,7 @@ LINE = [(0, 0), (10, 10)]
         (lambda: raster_layer(CITY, [1, 2], BOUNDS), r"values must have shape \(rows, columns\), got \(2,\)"),
         (lambda: raster_layer(CITY, np.ones((2, 2, 3)), BOUNDS), r"values must have shape .* got \(2, 2, 3\)"),
         (lambda: raster_layer(CITY, np.ones((0, 2)), BOUNDS), r"values must have shape .* got \(0, 2\)"),
+        (lambda: raster_layer(CITY, [[np.inf]], BOUNDS, fill=0.0), "values must not be infinite, 1 are"),
         (lambda: raster_layer(CITY, [["a"]], BOUNDS), "values must be a number or an array of numbers"),
         (lambda: raster_layer(CITY, [[1]], (0, 0, 1)), "bounds must be .west, south, east, north. in increasing"),
         (lambda: raster_layer(CITY, [[1]], (140, -20, 100, 10)), r"bounds must be .* increasing order, got \(140"),
@@ -379,6 +394,10 @@ LINE = [(0, 0), (10, 10)]
         (lambda: road_layer(CITY, [LINE, [(0, 0)]], 5), r"lines\[1\] must be .* got shape \(1, 2\)"),
         (lambda: road_layer(CITY, [[(0, 0, 0), (1, 1, 1)]], 5), r"lines\[0\] must be .* got shape \(2, 3\)"),
         (lambda: road_layer(CITY, [[(0, 0), (1, np.nan)]], 5), r"lines\[0\] must be at least two finite points"),
+        (
+            lambda: road_layer(FIELD, [[DELFT, DELFT]], 5, crs="EPSG:4326"),
+            r"lines\[0\] lies within 0.1 m; is crs, EPSG:4326 \(WGS 84\), its own\?",
+        ),
         (lambda: road_layer(CITY, None, 5), r"lines must be a list of lines \(M, 2\), got NoneType"),
         (lambda: road_layer(CITY, ["road"], 5), r"lines\[0\] must be a number or an array of numbers"),
         (lambda: road_layer(CITY, [LINE], 0), "width must be finite and above 0, got 0"),

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from uavlab.city import read_geojson
-from uavlab.risk import RiskMap, osm_layers, vehicle_share
+from uavlab.risk import CARS_BY_CLASS, RiskMap, osm_layers, vehicle_share
+from uavlab.risk.osm import LANES
 
 
 def lonlat(points, at=(4.36, 52.01)):
@@ -76,7 +77,56 @@ def test_what_is_assumed_of_roads_is_said(town):
     city, path = town(HOUSE, ROAD)
     said = str(osm_layers(city, path).source)
     assert "assumed: 1 × width of a road from the usual lanes of its class, of 3 m" in said
-    assert "assumed: 0.1 cars per km of each lane, on all roads" in said
+    assert "assumed: cars per km of each lane: 0.1, on all roads" in said
+    assert "cars per km of each lane: 0.2 to 6, by class" in str(
+        osm_layers(city, path, cars_per_km=CARS_BY_CLASS).source
+    )
+
+
+def test_cars_may_go_by_class_of_road(town):
+    city, path = town(HOUSE, ROAD, feature("LineString", [(0, 90), (140, 90)], highway="primary"))
+    same = osm_layers(city, path).vehicle_share
+    layer = osm_layers(city, path, cars_per_km={"primary": 2.0}).vehicle_share
+    south, north = (tuple(city.cell_of((70, y, 1.0))[:2]) for y in (50, 90))
+    assert layer[south] == 0
+    assert layer[north] == pytest.approx(20 * same[north])
+    assert CARS_BY_CLASS.keys() == LANES.keys()
+    with pytest.raises(ValueError, match=r"cars_per_km: highway must be one of 'motorway', .* got 'street'"):
+        osm_layers(city, path, cars_per_km={"street": 2.0})
+    with pytest.raises(ValueError, match="cars_per_km of 'primary' must be finite and at least 0, got -1"):
+        osm_layers(city, path, cars_per_km={"primary": -1.0})
+    with pytest.raises(ValueError, match="cars_per_km must be finite and at least 0, got nan"):
+        osm_layers(city, path, cars_per_km=np.nan)
+
+
+def test_a_motorway_has_the_lanes_of_both_of_its_ways(town):
+    ways = [feature("LineString", [(0, y), (140, y)], highway="motorway", oneway="yes") for y in (50, 62)]
+    city, path = town(HOUSE, *ways)
+    share = osm_layers(city, path).vehicle_share
+    assert share.sum() * city.cell**2 == pytest.approx(140 * 4 * 3.0 * float(vehicle_share()), rel=2e-3)
+
+
+def test_layers_of_a_projected_file_lie_under_its_city(tmp_path):
+    """The same houses, roads and woods in feet of New York: they are read as one file, so they must fit together."""
+    corner = np.array([981_000.0, 195_000.0])
+
+    def placed(kind, points, **properties):
+        at = (corner + np.array(points) / (1200 / 3937)).tolist()
+        geometry = {"type": kind, "coordinates": [at] if kind == "Polygon" else at}
+        return {"type": "Feature", "properties": properties, "geometry": geometry}
+
+    features = [
+        placed("Polygon", square(0, 0, 20), building="yes", height="12 m"),
+        placed("Polygon", square(60, 0, 40), natural="wood"),
+        placed("LineString", [(0, 50), (140, 50)], highway="residential", width="20"),
+    ]
+    path = tmp_path / "york.geojson"
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    city = read_geojson(path, crs="EPSG:2263", cell=2.0, margin=150.0)
+    layers = osm_layers(city, path, crs="EPSG:2263")
+    assert (layers.shelter == 0.5).sum() * city.cell**2 == pytest.approx(40 * 40, rel=0.05)
+    assert layers.vehicle_share.sum() * city.cell**2 == pytest.approx(140 * 20 * float(vehicle_share()), rel=1e-3)
+    assert (layers.shelter == 0.75).any()
 
 
 def test_broken_roads_and_unknown_places_are_refused(town):
@@ -91,3 +141,8 @@ def test_broken_roads_and_unknown_places_are_refused(town):
         osm_layers(nowhere, path)
     with pytest.raises(ValueError, match="city must be a City"):
         osm_layers(path, path)
+    path.write_text(json.dumps({"features": [{"geometry": {"type": "LineString", "coordinates": [[900, 9], [999, 9]]},
+                                              "properties": {"highway": "primary"}}]}))  # fmt: skip
+    for crs in (None, "local"):
+        with pytest.raises(ValueError, match=r"is in metres of an unknown place, .*: give crs='EPSG:...' here and"):
+            osm_layers(city, path, crs=crs)

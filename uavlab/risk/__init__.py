@@ -17,7 +17,7 @@ from uavlab.risk.fall import (
 )
 from uavlab.risk.layers import raster_layer, road_layer, shelter_layer
 from uavlab.risk.model import RiskMap
-from uavlab.risk.osm import osm_layers
+from uavlab.risk.osm import CARS_BY_CLASS, osm_layers
 from uavlab.risk.rates import (
     POPULATION_DENSITY,
     SHELTER,
@@ -30,6 +30,7 @@ from uavlab.risk.threat import LENGTH_WEIGHT, THREAT_WEIGHT, building_threat, pr
 
 __all__ = [
     "CAMPUS_FLIGHT",
+    "CARS_BY_CLASS",
     "LENGTH_WEIGHT",
     "POPULATION_DENSITY",
     "SHELTER",

@@ -190,25 +190,47 @@ def road_layer(
     )
     checks.positive("width", widths)
     covered = vehicle_share(densities, lane_width)
-    centers, half = column_centers(city).reshape(-1, 2), city.cell / 2
-    left = shapely.box(*(centers - half).T, *(centers + half).T)
-    layer = np.zeros(len(left))
     system = None if crs is None else system_of(crs)
-    for number in np.argsort(-covered, kind="stable"):  # the busiest first: what it covers is taken
-        line = checks.numbers(f"lines[{number}]", lines[number])
-        if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
-            raise ValueError(f"lines[{number}] must be at least two finite points (M, 2), got shape {line.shape}")
-        if system is not None:
-            line = city.checked_reference().east_north(system.to_lonlat(line))
-        elif np.ptp(line, axis=0).max() < SHORTEST_ROAD:
-            raise ValueError(f"lines[{number}] lies within {SHORTEST_ROAD:g} m; in degrees it needs crs='EPSG:4326'")
-        roadway = shapely.LineString(line).buffer(
-            widths[number] / 2, cap_style="flat", join_style="mitre", mitre_limit=LONGEST_MITRE
-        )
-        near = np.flatnonzero(shapely.intersects(left, roadway))
-        layer[near] += covered[number] * shapely.area(shapely.intersection(left[near], roadway)) / city.cell**2
-        left[near] = shapely.difference(left[near], roadway)
-    return np.minimum(layer, 1.0).reshape(city.shape[:2])
+    busiest = np.argsort(-covered, kind="stable")
+    roadways = [roadway(checked_line(f"lines[{n}]", lines[n], city, system), widths[n]) for n in busiest]
+    own = without_sooner(shapely.intersection(roadways, shapely.box(*city.bounds[:, :2].ravel())))
+    polygons, road = shapely.get_parts(own, return_index=True)
+    flat = shapely.get_type_id(polygons) == shapely.GeometryType.POLYGON  # else it only touches
+    triangles, part = shapely.get_parts(shapely.constrained_delaunay_triangles(polygons[flat]), return_index=True)
+    corners = shapely.get_coordinates(triangles).reshape(-1, 4, 2)[:, :3]
+    layer, unused = np.zeros(city.shape[:2]), np.zeros(city.shape[:2])
+    share_out((corners - city.origin[:2]) / city.cell, covered[busiest][road[flat][part]], layer, unused)
+    return np.minimum(layer, 1.0)
+
+
+def roadway(line: np.ndarray, width: float) -> shapely.Polygon:
+    """The area of a road, from end to end of its line; the outside of sharp bends is cut off."""
+    return shapely.LineString(line).buffer(width / 2, cap_style="flat", join_style="mitre", mitre_limit=LONGEST_MITRE)
+
+
+def without_sooner(areas: np.ndarray) -> np.ndarray:
+    """What each of several areas has for itself: without what those before it cover."""
+    pairs = shapely.STRtree(areas).query(areas, predicate="intersects")
+    later, sooner = pairs[:, np.argsort(pairs[0], kind="stable")]
+    later, sooner = later[sooner < later], sooner[sooner < later]
+    own = areas.copy()
+    for number in np.unique(later):
+        first, last = np.searchsorted(later, [number, number + 1])
+        own[number] = areas[number].difference(shapely.union_all(areas[sooner[first:last]]))
+    return own
+
+
+def checked_line(name: str, line: npt.ArrayLike, city: City, system: System | None) -> np.ndarray:
+    """A line (M, 2) in metres of a city; `ValueError` if it is none, or so short that it is one in degrees."""
+    points = checks.numbers(name, line)
+    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2 or not np.isfinite(points).all():
+        raise ValueError(f"{name} must be at least two finite points (M, 2), got shape {points.shape}")
+    if system is not None:
+        points = city.checked_reference().east_north(system.to_lonlat(points))
+    if np.ptp(points, axis=0).max() < SHORTEST_ROAD:
+        cure = "in degrees it needs crs='EPSG:4326'" if system is None else f"is crs, {system.name}, its own?"
+        raise ValueError(f"{name} lies within {SHORTEST_ROAD:g} m; {cure}")
+    return np.asarray(points)
 
 
 def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = HIGH_BUILDING) -> np.ndarray:

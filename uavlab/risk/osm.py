@@ -22,11 +22,25 @@ from uavlab.risk.layers import column_centers, road_layer, shelter_layer
 from uavlab.risk.rates import CARS_PER_KM, LANE_WIDTH, SHELTER
 
 LANES = {
-    "motorway": 4, "trunk": 4, "primary": 2, "secondary": 2, "tertiary": 2, "unclassified": 2, "residential": 2,
+    "motorway": 2, "trunk": 2, "primary": 2, "secondary": 2, "tertiary": 2, "unclassified": 2, "residential": 2,
     "living_street": 1, "service": 1, "motorway_link": 1, "trunk_link": 1, "primary_link": 1, "secondary_link": 1,
     "tertiary_link": 1,
 }  # fmt: skip
-"""Lanes of a road that doesn't say, by `highway`; other ways have no cars."""
+"""Lanes of a road that doesn't say, by `highway`; other ways have no cars.
+
+OpenStreetMap draws the two directions of a motorway, or of another road that is divided, as two ways.
+"""
+
+CARS_BY_CLASS = {
+    "motorway": 6.0, "trunk": 5.0, "primary": 4.0, "secondary": 3.0, "tertiary": 1.5, "unclassified": 0.5,
+    "residential": 0.5, "living_street": 0.5, "service": 0.2, "motorway_link": 6.0, "trunk_link": 5.0,
+    "primary_link": 4.0, "secondary_link": 3.0, "tertiary_link": 1.5,
+}  # fmt: skip
+"""Assumed cars per kilometre of a lane at day, by `highway`, for `osm_layers(..., cars_per_km=CARS_BY_CLASS)`.
+
+Flow over speed: 660 cars an hour at 110 km/h are 6 a kilometre, 150 at 50 km/h are 3, 15 at 30 km/h are 0.5. These
+flows are guesses of an ordinary city, not measured: give your own where they are known.
+"""
 
 SHELTERED = {
     ("natural", "wood"): "trees or low buildings", ("landuse", "forest"): "trees or low buildings",
@@ -50,7 +64,12 @@ class Layers(NamedTuple):
 
 
 def osm_layers(
-    city: City, path: str | Path, *, cars_per_km: float = CARS_PER_KM, lane_width: float = LANE_WIDTH, crs: Any = None
+    city: City,
+    path: str | Path,
+    *,
+    cars_per_km: float | Mapping[str, float] = CARS_PER_KM,
+    lane_width: float = LANE_WIDTH,
+    crs: Any = None,
 ) -> Layers:
     """Roads and shelter from a GeoJSON file with OpenStreetMap's properties, such as the one that the city came from.
 
@@ -58,11 +77,12 @@ def osm_layers(
     ----------
     city : City
     path : str or Path
-    cars_per_km : float
-        K, cars per kilometre of a lane, the same on all roads: the papers' 0.1, a road at night; 10 is a busy one.
+    cars_per_km : float, or mapping from classes of `highway` to floats
+        K, cars per kilometre of a lane, at least 0. By default the papers' 0.1 on all roads, a road at night; by class
+        `CARS_BY_CLASS` has assumed values of an ordinary day. A class that a mapping leaves out has no cars.
     lane_width : float
         D_road [m], of roads that tell their lanes or nothing.
-    crs : anything that pyproj takes, or "local", optional
+    crs : anything that pyproj takes, optional
         The reference system of the coordinates, as for `read_geojson`.
 
     Returns
@@ -73,14 +93,16 @@ def osm_layers(
     Raises
     ------
     ValueError
-        If the file is broken, or the city doesn't know where on Earth it lies.
+        If the file is broken or in metres of an unknown place, a number is out of its range, or the city doesn't know
+        where on Earth it lies.
     """
     checks.instance("city", city, City)
     checks.positive_number("lane_width", lane_width)
+    by_class = cars_by_class(cars_per_km)
     path, notes = Path(path), Notes()
     documents = read_json(path)
     features = [feature for document in documents for feature in features_of(document, path)]
-    lines, widths, areas = [], [], []
+    lines, widths, cars, areas = [], [], [], []
     for number, feature in enumerate(features):
         try:
             properties, geometry = feature.get("properties") or {}, feature.get("geometry")
@@ -90,6 +112,7 @@ def osm_layers(
                 found = roads_of(geometry, properties, lane_width, notes)
                 lines += [line for line, _ in found]
                 widths += [width for _, width in found]
+                cars += [by_class.get(str(properties.get("highway")), 0.0)] * len(found)
             elif kind := kind_of(properties):
                 areas.append((kind, outlines_of(geometry)))
         except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
@@ -102,21 +125,47 @@ def osm_layers(
     points = np.concatenate(everything)
     bounds = np.array([*points.min(axis=0), *points.max(axis=0)])
     system = system_for(bounds, declared_system(documents[0]), crs, path.name)
+    if system is None:
+        raise ValueError(
+            f"{path.name} is in metres of an unknown place, which a reader has moved to the corner of the buildings: "
+            "give crs='EPSG:...' here and where the city is read, or use road_layer and shelter_layer with metres of "
+            "the city"
+        )
+    place = city.checked_reference()
 
     def local(ring: np.ndarray) -> np.ndarray:
-        return ring if system is None else city.checked_reference().east_north(system.to_lonlat(ring))
+        return place.east_north(system.to_lonlat(ring))
 
-    at = column_centers(city)
+    centers = column_centers(city).reshape(-1, 2)
+    columns = shapely.STRtree(shapely.points(centers))
+    sheltered = shelter.reshape(-1)  # the same memory
     for kind, outlines in areas:
         notes.add("taken", f"land as {kind}")
         for shell, *holes in outlines:
             polygon = shapely.make_valid(shapely.Polygon(local(shell), [local(hole) for hole in holes]))
-            inside = shapely.contains_xy(polygon, at[..., 0], at[..., 1])
-            shelter[inside] = np.maximum(shelter[inside], SHELTER[kind])
-    share = road_layer(city, [local(line) for line in lines], widths, cars_per_km=cars_per_km, lane_width=lane_width)
+            inside = columns.query(polygon, predicate="contains")
+            sheltered[inside] = np.maximum(sheltered[inside], SHELTER[kind])
+    share = road_layer(city, [local(line) for line in lines], widths, cars_per_km=cars, lane_width=lane_width)
     if lines:
-        notes.add("assumed", f"{cars_per_km:g} cars per km of each lane, on all roads", count=0)
+        notes.add("assumed", f"cars per km of each lane: {told_of(cars_per_km)}", count=0)
     return Layers(shelter_layer(city, shelter), share, notes.source(path.name, "GeoJSON"))
+
+
+def cars_by_class(cars_per_km: float | Mapping[str, float]) -> Mapping[str, float]:
+    """Cars per kilometre of a lane, by class of road; `ValueError` if a class or a number is none."""
+    if not isinstance(cars_per_km, Mapping):
+        checks.not_negative_number("cars_per_km", cars_per_km)
+        return dict.fromkeys(LANES, float(cars_per_km))
+    for name, cars in cars_per_km.items():
+        checks.one_of("cars_per_km: highway", name, LANES)
+        checks.not_negative_number(f"cars_per_km of {name!r}", cars)
+    return cars_per_km
+
+
+def told_of(cars_per_km: float | Mapping[str, float]) -> str:
+    if isinstance(cars_per_km, Mapping):
+        return f"{min(cars_per_km.values(), default=0):g} to {max(cars_per_km.values(), default=0):g}, by class"
+    return f"{cars_per_km:g}, on all roads"
 
 
 def roads_of(
