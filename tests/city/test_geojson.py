@@ -181,7 +181,7 @@ def test_missing_heights_are_counted_and_named_with_the_cure(geojson):
     path = geojson(*features, {"type": "Feature", "geometry": None})
     with pytest.raises(ValueError, match=r"2 of 3 buildings in town\.geojson have no height that can be") as error:
         read_geojson(path)
-    assert "the first is 'feature way/7' with None" in str(error.value)
+    assert "first 'feature way/7' with None, 'feature 2 (counted from 0)' with 'tall'." in str(error.value)
     assert "Properties in the file: height, stairs." in str(error.value)
     assert "Pass default_height=10.0, or height='one of them'" in str(error.value)
     with pytest.warns(UserWarning, match=r"assumed: 2 × height of 7 m \(default_height\) \(feature way/7, feature 2"):
@@ -190,7 +190,9 @@ def test_missing_heights_are_counted_and_named_with_the_cure(geojson):
     assert city.source.count("derived", "that can't be understood") == 1
 
 
-@pytest.mark.parametrize("height", [0, True, "nan", "inf m", -5, "-5 m", None, [3], {"m": 3}, 10**400, "1e3", ""])
+@pytest.mark.parametrize(
+    "height", [0, True, "nan", "inf m", -5, "-5 m", None, [3], {"m": 3}, 10**400, "1e3", "1,234 ft", ""]
+)
 def test_what_is_no_height_counts_as_unknown(geojson, height):
     path = geojson(feature(SQUARE, height=height))
     with pytest.raises(ValueError, match=r"1 of 1 buildings .* have no height"):
@@ -201,6 +203,56 @@ def test_an_underside_above_the_roof_is_taken_from_the_ground(geojson):
     city = read_geojson(geojson(feature(SQUARE, height=5, min_height=5), feature(FAR, height=5, min_height="low")))
     assert [building.bounds[0, 2] for building in city.buildings] == [0, 0]
     assert city.source.count("mended", "underside") == 1
+
+
+@pytest.mark.parametrize(
+    ("properties", "options", "bottom", "top"),
+    [
+        ({"height": 30, "min_height": "0;10"}, {}, 0, 30),  # in doubt the lower underside
+        ({"height": "10;30", "min_height": 4}, {}, 4, 30),  # and the higher roof
+        ({"num_floors": 12}, {"height": "num_floors"}, 0, 36),
+        ({"storeys": 5}, {"height": "storeys"}, 0, 15),
+        ({"height": 30, "floor": 2}, {"base": "floor"}, 2, 30),
+    ],
+)
+def test_in_doubt_a_building_is_larger(geojson, properties, options, bottom, top):
+    city = read_geojson(geojson(feature(SQUARE, **properties)), cell=5.0, heights_above="ground", **options)
+    assert city.buildings[0].bounds[:, 2] == pytest.approx([bottom, top])
+
+
+def test_one_height_for_all_makes_no_house_of_a_lake(geojson):
+    path = geojson(feature(SQUARE, building="yes"), feature(FAR, natural="water"))
+    city = read_geojson(path, height=9)
+    assert len(city.buildings) == 1
+    assert city.source.count("derived", "no obstacle: polygons that are no building") == 1
+
+
+def test_a_sliver_is_left_out_and_the_rest_is_read(geojson):
+    sliver = [[1030, 2030], [1040, 2030], [1040, 2030.00001]]
+    with pytest.warns(UserWarning, match=r"left out: 1 × polygon without area \(feature 1"):
+        assert len(read_geojson(geojson(feature(SQUARE, height=5), feature(sliver, height=5))).buildings) == 1
+
+
+def test_what_an_outline_goes_around_twice_is_inside(geojson):
+    star = [(0, 10), (6, -8), (-9, 3), (9, 3), (-6, -8)]  # its five points cross the lines of each other
+    ring = [[1050 + x, 2050 + y] for x, y in star]
+    city = read_geojson(geojson(feature(SQUARE, height=10), feature(ring, height=10)), cell=1.0)
+    x, y = city.buildings[1].bounds[:, :2].mean(axis=0)
+    assert not city.is_free((x, y - 1.0, 5.0))
+
+
+def test_above_the_sea_a_house_without_underside_stands_on_the_ground_nearby(geojson):
+    unknown = feature(shifted(SQUARE, (-850, -2000)), TopHeight=100.0)
+    by_storeys = feature(shifted(SQUARE, (-960, -2000)), BaseHeight=30.0, **{"building:levels": 4})
+    below = feature(shifted(SQUARE, (-700, -2000)), BaseHeight=-4.0, TopHeight=9.0)
+    options = {"height": "TopHeight", "base": "BaseHeight", "crs": "local", "heights_above": "sea", "cell": 5.0}
+    city = read_geojson(geojson(*bases(), unknown, by_storeys, below), **options)
+    heights = [building.bounds[:, 2].tolist() for building in city.buildings]
+    assert heights[1] == [124, 144]
+    assert heights[3][1] == 104  # its roof above the sea, less that of the lowest foot, −4
+    assert 0 < heights[3][0] < 124
+    assert heights[4] == [34, 46]
+    assert heights[5] == [0, 13]
 
 
 def shifted(ring, by):
@@ -352,7 +404,7 @@ def test_geographic_systems_have_degrees(geojson, name):
         (SQUARE, {"storey_height": 0}, "storey_height must be finite and above 0"),
         (SQUARE, {"default_height": -1}, "default_height must be finite and above 0"),
         (SQUARE, {"heights_above": "roof"}, "heights_above must be one of 'auto', 'ground', 'sea'"),
-        (SQUARE, {"height": -3}, "have no height that can be understood, with height=-3"),
+        (SQUARE, {"height": -3}, "height must be finite and above 0, got -3"),
         (SQUARE, {"voxels": "corners"}, "voxels must be one of 'touched', 'centres', got 'corners'"),
         (SQUARE, {"terrain": np.nan}, "terrain must be finite"),
         (SQUARE, {"terrain": [1, 2]}, "terrain must be a Terrain"),
@@ -433,7 +485,7 @@ def test_properties_that_are_no_object_are_named(geojson):
 
 def test_file_without_polygons_says_what_it_has(geojson):
     point = {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [1, 2]}}
-    with pytest.raises(ValueError, match=r"town\.geojson has no polygon; its features are 2 Point, 1 None"):
+    with pytest.raises(ValueError, match=r"has no polygon with an area; its features are 2 Point, 1 None"):
         read_geojson(geojson(point, point, {"type": "Feature", "geometry": None}))
     with pytest.raises(ValueError, match="its features are none at all"):
         read_geojson(geojson())

@@ -9,7 +9,8 @@ import shapely
 
 from uavlab import checks
 from uavlab.city.documents import lowest_corner
-from uavlab.city.footprints import Footprint
+from uavlab.city.footprints import Footprint, polygons_in
+from uavlab.city.heights import Heights
 from uavlab.city.place import Place, System
 from uavlab.city.rasters import read_terrain
 from uavlab.city.source import Notes
@@ -17,6 +18,15 @@ from uavlab.city.terrain import Terrain
 
 SAMPLES = 2.0
 """Between the places at which the ground under a footprint is looked at [m]."""
+
+MOST_SAMPLES = 100
+"""Of those, in each direction; under larger footprints they are farther apart."""
+
+THINNEST = 1e-4
+"""Twice the area of a polygon by half of its length [m]: what is thinner is rounding, and spans no volume."""
+
+LEVEL = (int, float, np.integer, np.floating)
+"""Kinds of numbers that say how high level ground is."""
 
 
 class Block(NamedTuple):
@@ -26,21 +36,27 @@ class Block(NamedTuple):
     kind: str
     plan: shapely.MultiPolygon
     """[m]"""
-    base: float
-    """[m]; NaN where it isn't known."""
-    top: float
+    heights: Heights
+    """As the file states them."""
+    base: float = np.nan
+    """[m], in the file's vertical system; NaN where it isn't known."""
+    top: float = np.nan
+
+    @property
+    def label(self) -> str:
+        return self.footprint.label
 
 
-def advice_on(system: System | None) -> str:
-    if system is not None and system.degrees:
-        return "coordinates were read as degrees; if they are metres, pass crs='local'"
-    return "if the coordinates are in another system, pass its code, as in crs='EPSG:4326'"
+def plans_of(blocks: Sequence[Block]) -> np.ndarray:
+    """Their plans, as an array for shapely."""
+    plans = np.empty(len(blocks), dtype=object)
+    plans[:] = [block.plan for block in blocks]
+    return plans
 
 
 def placed(blocks: Sequence[Block], system: System | None) -> tuple[Place | None, list[Block]]:
     """Where on Earth the south-west corner of the buildings is, and the buildings in metres east and north of it."""
-    plans = np.array([block.plan for block in blocks], dtype=object)
-    points = shapely.get_coordinates(plans)
+    points = shapely.get_coordinates(plans_of(blocks))
     if system is None:
         return None, with_plans(blocks, points - points.min(axis=0))
     lonlat = system.to_lonlat(points)
@@ -52,44 +68,70 @@ def placed(blocks: Sequence[Block], system: System | None) -> tuple[Place | None
 
 def moved(blocks: Sequence[Block], old: Place, new: Place) -> tuple[Place, list[Block]]:
     """The blocks of a place in metres of another one, and that."""
-    points = shapely.get_coordinates(np.array([block.plan for block in blocks], dtype=object))
+    points = shapely.get_coordinates(plans_of(blocks))
     return new, with_plans(blocks, new.east_north(old.longitude_latitude(points)))
 
 
 def with_plans(blocks: Sequence[Block], points: np.ndarray) -> list[Block]:
     """The blocks with other coordinates (N, 2) of all their corners."""
-    plans = shapely.set_coordinates(np.array([block.plan for block in blocks], dtype=object), points)
+    plans = shapely.set_coordinates(plans_of(blocks), points)
+    for n in np.flatnonzero(~shapely.is_valid(plans)):  # rounding made corners meet
+        plans[n] = shapely.MultiPolygon(polygons_in(shapely.make_valid(plans[n])))
     return [block._replace(plan=plan) for block, plan in zip(blocks, plans, strict=True)]
+
+
+def with_volume(blocks: Sequence[Block], notes: Notes) -> list[Block]:
+    """The blocks without polygons that are too thin to span a volume; those that have no other are left out."""
+    parts, owner = shapely.get_parts(plans_of(blocks), return_index=True)
+    thick = 2.0 * shapely.area(parts) > THINNEST * shapely.length(parts) / 2.0
+    if thick.all() and len(np.unique(owner)) == len(blocks):
+        return list(blocks)
+    present = np.unique(owner[thick])
+    for n in np.setdiff1d(np.arange(len(blocks)), present):
+        notes.add("left out", "polygon without area", blocks[n].label)
+    if not len(present):
+        return []
+    plans = shapely.multipolygons(parts[thick], indices=np.searchsorted(present, owner[thick]))
+    return [blocks[n]._replace(plan=plan) for n, plan in zip(present, plans, strict=True)]
 
 
 def check_extent(blocks: Sequence[Block], system: System | None) -> None:
     """Refuse what is no city, most of all metres that were read as degrees."""
-    bounds = shapely.bounds(np.array([block.plan for block in blocks], dtype=object)).reshape(-1, 2)
-    lowest_corner(np.column_stack([bounds, np.zeros(len(bounds))]), advice_on(system))
+    bounds = shapely.bounds(plans_of(blocks)).reshape(-1, 2)
+    centers = bounds.reshape(-1, 2, 2).mean(axis=1)
+    away = np.linalg.norm(centers - np.median(centers, axis=0), axis=1)
+    advice = (
+        "coordinates were read as degrees; if they are metres, pass crs='local'"
+        if system is not None and system.degrees
+        else "if the coordinates are in another system, pass its code, as in crs='EPSG:4326'"
+    )
+    farthest = f"; the farthest from the others is {blocks[int(away.argmax())].label!r:.100}" if len(blocks) > 1 else ""
+    lowest_corner(np.column_stack([bounds, np.zeros(len(bounds))]), advice + farthest)
 
 
-def ground_below(
-    blocks: Sequence[Block], above_sea: bool, terrain: Any, place: Place | None, notes: Notes
-) -> Terrain | float:
+def ground_below(blocks: Sequence[Block], from_sea: bool, terrain: Any, place: Place | None) -> Terrain | float:
     """The ground on the map, above the height of the place [m]."""
     height = 0.0 if place is None else place.height
-    if terrain is None and not above_sea:
-        notes.add("derived", "level ground at z = 0", count=0)
-        return -height
-    if isinstance(terrain, int | float):
+    if terrain is None:
+        return ground_through_feet(blocks, height) if from_sea else -height
+    if isinstance(terrain, LEVEL):
         checks.finite("terrain", terrain)
         return float(terrain) - height
-    if terrain is None:
-        corners, owner = shapely.get_coordinates(
-            np.array([block.plan for block in blocks], dtype=object), return_index=True
-        )
-        bases = np.array([block.base for block in blocks])[owner]
-        notes.add("derived", "ground through the feet of the buildings, linear in between", count=0)
-        return Terrain.from_points(np.column_stack([corners, bases - height]))
     surface = read_terrain(terrain) if isinstance(terrain, str | Path) else terrain
     checks.instance("terrain", surface, Terrain)
-    notes.add("derived", "ground from the terrain given", count=0)
     return shifted(surface, height) if surface.system is None else surface.placed(place)
+
+
+def ground_through_feet(blocks: Sequence[Block], height: float) -> Terrain:
+    """The ground through the corners of all buildings whose underside is known, above a height [m]."""
+    corners, owner = shapely.get_coordinates(plans_of(blocks), return_index=True)
+    bases = np.array([block.heights.base if np.isnan(block.base) else block.base for block in blocks])[owner]
+    known = np.isfinite(bases)
+    if not known.any():
+        raise ValueError(
+            "heights_above='sea', but no building has an underside: give base='the property that holds it', or terrain="
+        )
+    return Terrain.from_points(np.column_stack([corners, bases - height])[known])
 
 
 def lowest_ground(blocks: Sequence[Block], ground: Terrain | float) -> float:
@@ -105,35 +147,52 @@ def shifted(ground: Terrain | float, zero: float) -> Terrain | float:
 
 
 def ranges_under(blocks: Sequence[Block], surface: Terrain) -> list[tuple[float, float]]:
-    """Lowest and highest ground under each footprint, looked for at its corners and every few metres inside [m]."""
-    places = [places_in(block.plan) for block in blocks]
-    heights = surface.heights_at(np.concatenate(places))
-    ends = np.cumsum([len(some) for some in places])
-    ranges = []
-    for block, under in zip(blocks, np.split(heights, ends[:-1]), strict=True):
-        if np.isnan(under).any():
-            raise ValueError(
-                f"terrain says nothing about the ground under {block.footprint.label!r}: give a larger one, or "
-                "terrain.filled(), which goes on beyond its edges and through holes"
-            )
-        ranges.append((float(under.min()), float(under.max())))
-    return ranges
+    """Lowest and highest ground under each footprint [m].
+
+    Looked for at the terrain's own corners, so that no summit is missed, along the walls, and every few metres inside.
+    """
+    if not blocks:
+        return []
+    plans = plans_of(blocks)
+    summits = shapely.STRtree(shapely.points(surface.points[:, :2]))
+    owner, summit = summits.query(plans, predicate="intersects")
+    places = [places_in(plan) for plan in plans]
+    heights = np.concatenate([surface.heights_at(np.concatenate(places)), surface.points[summit, 2]])
+    of = np.concatenate([np.repeat(np.arange(len(blocks)), [len(some) for some in places]), owner])
+    lowest, highest = np.full(len(blocks), np.inf), np.full(len(blocks), -np.inf)
+    with np.errstate(invalid="ignore"):  # NaN spreads
+        np.minimum.at(lowest, of, heights)
+        np.maximum.at(highest, of, heights)
+    unknown = np.flatnonzero(np.isnan(lowest))
+    if len(unknown):
+        raise ValueError(
+            f"terrain says nothing about the ground under {blocks[unknown[0]].label!r} and {len(unknown) - 1} other "
+            "buildings: give a larger one, or terrain.filled(), which goes on beyond its edges and through holes"
+        )
+    return list(zip(lowest.tolist(), highest.tolist(), strict=True))
 
 
 def places_in(plan: shapely.MultiPolygon) -> np.ndarray:
+    """Points (N, 2) along the walls and on a grid inside."""
     west, south, east, north = plan.bounds
-    x, y = np.meshgrid(np.arange(west, east, SAMPLES), np.arange(south, north, SAMPLES))
+    step = max(SAMPLES, float(np.sqrt((east - west) * (north - south))) / MOST_SAMPLES)
+    x, y = np.meshgrid(np.arange(west, east, step), np.arange(south, north, step))
     inside = shapely.contains_xy(plan, x, y)
-    return np.concatenate([shapely.get_coordinates(plan), np.column_stack([x[inside], y[inside]])])
+    walls = shapely.get_coordinates(shapely.segmentize(plan, step))
+    return np.concatenate([walls, np.column_stack([x[inside], y[inside]])])
 
 
 def extents_of(
-    blocks: Sequence[Block], above_sea: bool, ground: Terrain | float, zero: float
+    blocks: Sequence[Block], from_sea: bool, ground: Terrain | float, zero: float
 ) -> list[tuple[float, float]]:
-    """Underside and roof of each block on the map [m]."""
-    if above_sea:
-        return [(block.base - zero, block.top - zero) for block in blocks]
+    """Underside and roof of each block on the map [m].
+
+    Above the sea a building reaches down to the lowest ground below it: no gap is left open between them.
+    """
     if not isinstance(ground, Terrain):
-        return [(block.base, block.top) for block in blocks]
+        feet = [min(block.base - zero, ground) if from_sea else block.base for block in blocks]
+        return [(foot, block.top - zero * from_sea) for foot, block in zip(feet, blocks, strict=True)]
     ranges = ranges_under(blocks, ground)
+    if from_sea:
+        return [(min(b.base - zero, low), b.top - zero) for b, (low, _) in zip(blocks, ranges, strict=True)]
     return [(low + block.base, high + block.top) for block, (low, high) in zip(blocks, ranges, strict=True)]

@@ -1,6 +1,7 @@
 """Polygons of a GeoJSON file as footprints: mended where their rings are broken, sorted into buildings and others."""
 
 from collections.abc import Mapping, Sequence
+from functools import reduce
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -9,9 +10,6 @@ import shapely
 
 from uavlab.city.documents import progress
 from uavlab.city.source import Notes
-
-NARROWEST = 0.1
-"""What parts leave of an outline counts from this width on [m]; less is how two outlines were drawn apart."""
 
 OTHER = "no obstacle"
 BUILDING, PART = "building", "building part"
@@ -28,14 +26,20 @@ class Footprint(NamedTuple):
 
 def features_of(document: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]:
     """The features of a GeoJSON document; a bare geometry is a feature without properties."""
-    features = [document] if document.get("type") == "Feature" else document.get("features")
-    if "coordinates" in document or "geometries" in document:
-        features = [{"geometry": document}]
-    if not isinstance(features, list) or not all(isinstance(feature, dict) for feature in features):
+    kind = document.get("type")
+    if kind == "Feature":
+        return [document]
+    if kind != "FeatureCollection" and ("coordinates" in document or "geometries" in document):
+        return [{"geometry": document}]
+    features = document.get("features")
+    if not isinstance(features, list):
         raise ValueError(
             f"{path.name} is not GeoJSON: expected a FeatureCollection with a list of features, "
-            f"got type {document.get('type')!r} (CityJSON is read by read_cityjson)"
+            f"got type {kind!r} (CityJSON is read by read_cityjson)"
         )
+    for index, feature in enumerate(features):
+        if not isinstance(feature, dict):
+            raise ValueError(f"feature {index} (counted from 0) of {path.name} is no object {{...}}: {feature!r:.60}")
     return features
 
 
@@ -49,38 +53,47 @@ def declared_system(document: Mapping[str, Any]) -> Any:
 
 def footprints_of(features: Sequence[Mapping[str, Any]], notes: Notes) -> list[Footprint]:
     """All features with polygons that have an area, mended; what has none is noted."""
-    found, without = [], 0
+    found: list[tuple[str, str, Mapping[str, Any]]] = []
+    outlines: list[list[list[np.ndarray]]] = []
+    without = raised = 0
     for index, feature in enumerate(progress(features, "features")):
-        footprint = footprint_of(feature, index, notes)
-        if footprint is None:
-            without += 1
+        label, name, properties, rings, has_altitude = read_feature(feature, index)
+        raised += has_altitude
+        if rings:
+            found.append((label, name, properties))
+            outlines.append(rings)
         else:
-            found.append(footprint)
+            without += 1
     if without:
         notes.add("derived", f"{OTHER}: points, lines, features without geometry", count=without)
-    return found
+    if raised:
+        notes.add("derived", "third coordinates, which say nothing about heights here", count=raised)
+    footprints = []
+    for (label, name, properties), (polygons, broken) in zip(found, mended_all(outlines), strict=True):
+        if polygons is None:
+            notes.add("left out", "polygon without area", label)
+            continue
+        if broken:
+            notes.add("mended", "outline that crossed or touched itself, or a ring without area", label)
+        footprints.append(Footprint(label, name, polygons, properties))
+    return footprints
 
 
-def footprint_of(feature: Mapping[str, Any], index: int, notes: Notes) -> Footprint | None:
-    """A feature's polygons; None where it has none."""
-    properties = feature.get("properties") or {}
+def read_feature(
+    feature: Mapping[str, Any], index: int
+) -> tuple[str, str, Mapping[str, Any], list[list[np.ndarray]], bool]:
+    """Label, name, properties and outlines of a feature, and whether it has altitudes; `ValueError` names it."""
     label = f"feature {index} (counted from 0)"
     try:
+        properties = feature.get("properties") or {}
         identifier = feature.get("id", properties.get("id", properties.get("@id")))
         label = label if identifier is None else f"feature {identifier}"
-        outlines = outlines_of(feature.get("geometry"))
+        geometry = feature.get("geometry")
+        outlines = outlines_of(geometry)
+        has_altitude = geometry is not None and bool(outlines) and has_altitudes(geometry)
     except (AttributeError, IndexError, KeyError, OverflowError, RecursionError, TypeError, ValueError) as error:
-        raise ValueError(f"{label!r} is malformed: {error!r:.200}") from None
-    if not outlines:
-        return None
-    whole = [mended(rings) for rings in outlines]
-    polygons = [polygon for mend, _ in whole for polygon in mend]
-    if not polygons:
-        notes.add("left out", "polygon without area", label)
-        return None
-    if any(broken for _, broken in whole):
-        notes.add("mended", "outline that crossed or touched itself, or a ring without area", label)
-    return Footprint(label, str(properties.get("name") or label), shapely.MultiPolygon(polygons), properties)
+        raise ValueError(f"{label!r:.200} is malformed: {error!r:.200}") from None
+    return label, str(properties.get("name") or label), properties, outlines, has_altitude
 
 
 def outlines_of(geometry: Mapping[str, Any] | None) -> list[list[np.ndarray]]:
@@ -96,23 +109,79 @@ def outlines_of(geometry: Mapping[str, Any] | None) -> list[list[np.ndarray]]:
 
 
 def ring_of(ring: Sequence[Sequence[float]]) -> np.ndarray:
-    corners = np.array([(x, y) for x, y, *_ in ring], float).reshape(-1, 2)
+    corners = np.array([(x, y) for x, y, *_ in ring] or np.empty((0, 2)))
+    if corners.dtype.kind not in "fi":
+        raise ValueError(f"coordinates must be numbers that a float can hold, got {ring[0]!r:.60}")
     if not np.isfinite(corners).all():
         raise ValueError("a coordinate is NaN or infinite")
-    return corners
+    return corners.astype(float, copy=False)
 
 
-def mended(rings: Sequence[np.ndarray]) -> tuple[list[shapely.Polygon], bool]:
-    """Simple polygons with the area of an outline and its holes, none if it has none; and whether it was broken."""
-    shell, *holes = rings
-    proper = [hole for hole in holes if len(np.unique(hole, axis=0)) > 2]
-    if len(np.unique(shell, axis=0)) < 3:
-        return [], True
-    polygon = shapely.Polygon(shell, proper)
-    broken = len(proper) < len(holes) or not polygon.is_valid
-    if broken:
-        polygon = shapely.make_valid(polygon)
-    return polygons_in(polygon), broken
+def has_altitudes(geometry: Mapping[str, Any]) -> bool:
+    """Whether a ring has a third coordinate that isn't 0."""
+    if geometry["type"] == "GeometryCollection":
+        return any(has_altitudes(part) for part in geometry["geometries"])
+    if geometry["type"] not in ("Polygon", "MultiPolygon"):
+        return False
+    polygons = geometry["coordinates"] if geometry["type"] == "MultiPolygon" else [geometry["coordinates"]]
+    return any(len(point) > 2 and point[2] for polygon in polygons for ring in polygon for point in ring)
+
+
+def mended_all(outlines: Sequence[Sequence[Sequence[np.ndarray]]]) -> list[tuple[shapely.MultiPolygon | None, bool]]:
+    """The polygons of each feature with outlines, None where they have no area; and whether any was broken.
+
+    All at once, because a city has many; only the broken ones are looked at one by one.
+    """
+    polygons = [rings for some in outlines for rings in some]
+    owner = np.repeat(np.arange(len(outlines)), [len(some) for some in outlines])
+    rings = [ring for some in polygons for ring in some]
+    of_polygon = np.repeat(np.arange(len(polygons)), [len(some) for some in polygons])
+    poor = np.array([different(ring) < 3 for ring in rings], dtype=bool)
+    broken = np.zeros(len(polygons), dtype=bool)
+    broken[of_polygon[poor]] = True
+    whole = np.flatnonzero(~broken)
+    good = [ring for ring, of in zip(rings, of_polygon, strict=True) if not broken[of]]
+    if good:
+        loops = shapely.linearrings(np.concatenate(good), indices=np.repeat(np.arange(len(good)), [*map(len, good)]))
+        shapes = shapely.polygons(loops, indices=np.searchsorted(whole, of_polygon[~broken[of_polygon]]))
+        broken[whole[~shapely.is_valid(shapes)]] = True
+        valid, owners = shapes[~broken[whole]], owner[whole[~broken[whole]]]
+    else:
+        valid, owners = np.empty(0, dtype=object), np.empty(0, dtype=int)
+    mends = [(int(owner[n]), part) for n in np.flatnonzero(broken) for part in mended(polygons[n])]
+    parts = np.array([*valid, *(part for _, part in mends)], dtype=object)
+    owners = np.concatenate([owners, [of for of, _ in mends]]).astype(int)
+    order = np.argsort(owners, kind="stable")
+    present = np.unique(owners)
+    found = np.full(len(outlines), None, dtype=object)
+    if len(parts):
+        found[present] = shapely.multipolygons(parts[order], indices=np.searchsorted(present, owners[order]))
+    were_broken = np.bincount(owner[broken], minlength=len(outlines)) > 0
+    return list(zip(found, were_broken.tolist(), strict=True))
+
+
+def different(ring: np.ndarray) -> int:
+    """How many corners of a ring differ from each other."""
+    return len(set(map(tuple, ring.tolist())))
+
+
+def mended(rings: Sequence[np.ndarray]) -> list[shapely.Polygon]:
+    """Simple polygons with the area of an outline and its holes, none if it has none.
+
+    What an outline goes around is inside, twice or in whatever direction; what several holes share, or what lies
+    outside of the outline, is no hole. So nothing that somebody may have meant to be built is lost.
+    """
+    shell, *holes = (repaired(ring) for ring in rings)
+    courtyards = reduce(shapely.symmetric_difference, holes, shapely.Polygon())
+    left = shapely.difference(shell, courtyards)
+    return polygons_in(left if left.area > 0 else shell)
+
+
+def repaired(ring: np.ndarray) -> shapely.Geometry:
+    """All that a ring goes around."""
+    if different(ring) < 3:
+        return shapely.Polygon()
+    return shapely.make_valid(shapely.Polygon(ring), method="structure", keep_collapsed=False)
 
 
 def polygons_in(geometry: shapely.Geometry) -> list[shapely.Polygon]:
@@ -140,20 +209,3 @@ def kinds_of(footprints: Sequence[Footprint], has_height: Sequence[bool]) -> lis
         else:
             kinds.append(BUILDING)
     return kinds
-
-
-def without_parts(outlines: Sequence[shapely.MultiPolygon], parts: Sequence[shapely.MultiPolygon]) -> list[list[int]]:
-    """For each outline [m] the numbers of the parts that override it: those at least half of which lie in it."""
-    tree = shapely.STRtree(parts)
-    members: list[list[int]] = []
-    for outline in outlines:
-        near = tree.query(outline, predicate="intersects")
-        members.append([int(n) for n in near if parts[n].intersection(outline).area >= 0.5 * parts[n].area])
-    return members
-
-
-def rest_of(outline: shapely.MultiPolygon, parts: Sequence[shapely.MultiPolygon]) -> shapely.MultiPolygon:
-    """What parts leave of an outline [m], where it is wide enough to be more than two ways to draw a line."""
-    left = outline.difference(shapely.union_all(parts))
-    opened = left.buffer(-NARROWEST / 2)
-    return shapely.MultiPolygon([p for p in polygons_in(left) if not p.intersection(opened).is_empty])

@@ -13,6 +13,7 @@ import shapely
 
 from uavlab import checks
 from uavlab.city.blocks import (
+    LEVEL,
     Block,
     check_extent,
     extents_of,
@@ -20,26 +21,26 @@ from uavlab.city.blocks import (
     lowest_ground,
     moved,
     placed,
+    ranges_under,
     shifted,
+    with_volume,
 )
 from uavlab.city.buildings import Building, convex_parts, extrude
 from uavlab.city.documents import count, progress, read_json
 from uavlab.city.footprints import (
     BUILDING,
     OTHER,
-    PART,
     Footprint,
     declared_system,
     features_of,
     footprints_of,
     kinds_of,
-    rest_of,
-    without_parts,
 )
-from uavlab.city.heights import Wording, heights_of
+from uavlab.city.heights import Wording, above_ground, above_sea, heights_of
 from uavlab.city.model import City
+from uavlab.city.parts import overridden_by_parts
 from uavlab.city.place import System, metres_per, system_for
-from uavlab.city.source import Notes
+from uavlab.city.source import FIRST, Notes
 from uavlab.city.terrain import Terrain
 from uavlab.city.zones import NoFlyZone
 
@@ -47,6 +48,9 @@ STOREY_HEIGHT = 3.0
 """Of a storey [m], where a file counts storeys."""
 
 ABOVE = ("auto", "ground", "sea")
+
+MOST_NAMES = 40
+"""Of properties in a message."""
 
 OSM_BASE = "min_height"
 """OpenStreetMap's key of an underside, which is always above ground."""
@@ -123,40 +127,42 @@ def read_geojson(
     checks.positive_number("storey_height", storey_height)
     if default_height is not None:
         checks.positive_number("default_height", default_height)
+    if not isinstance(height, str):
+        checks.positive_number("height", height)
+    if not isinstance(base, str):
+        (checks.not_negative_number if heights_above != "sea" else checks.finite)("base", base)
     checks.one_of("heights_above", heights_above, ABOVE)
     path, notes = Path(path), Notes()
-    documents = read_json(path)
-    features = [feature for document in documents for feature in features_of(document, path)]
-    footprints = footprints_of(features, notes)
-    if not footprints:
-        kinds = count(kind_of_geometry(feature) for feature in features)
-        raise ValueError(f"{path.name} has no polygon; its features are {kinds}")
+    footprints, declared = read_footprints(path, notes)
     bounds = shapely.total_bounds([footprint.polygons for footprint in footprints])
-    system = system_for(bounds, declared_system(documents[0]), crs, path.name)
+    system = system_for(bounds, declared, crs, path.name)
     factor = metres_per(height_unit) if height_unit is not None else 1.0 if system is None else system.height_factor
-    note_system(notes, system, crs, declared_system(documents[0]), height_unit)
-    wording = Wording(height, base, default_height, storey_height, factor)
-    blocks = blocks_of(footprints, wording, notes)
-    blocks = with_heights(blocks, wording, notes, path)
+    note_system(notes, system, crs, declared, height_unit)
+    wording = Wording(height, base, storey_height, factor)
+    blocks = blocks_of(footprints, wording, path)
+    others = len(footprints) - len(blocks)
     place, blocks = placed(blocks, system)
     check_extent(blocks, system)
+    blocks = with_volume(blocks, notes)
+    from_sea = heights_above == "sea" or (heights_above == "auto" and mostly_raised(blocks, wording, notes))
+    ground = ground_below(blocks, from_sea, terrain, place)
+    blocks = from_the_sea(blocks, wording, ground, notes) if from_sea else from_the_ground(blocks, wording, notes)
+    if others:
+        notes.add("derived", f"{OTHER}: polygons that are no building and have no height", count=others)
+    blocks = with_default(blocks, wording, default_height, from_sea, path, notes)
     blocks = overridden_by_parts(blocks, notes)
-    above_sea = heights_above == "sea" or (
-        heights_above == "auto" and base != OSM_BASE and mostly_raised(blocks, notes)
-    )
-    ground = ground_below(blocks, above_sea, terrain, place, notes)
-    zero = lowest_ground(blocks, ground)
+    if not blocks:
+        raise ValueError(f"{path.name} has no building with a height and an area: {notes.source('all', 'GeoJSON')}")
+    note_ground(notes, from_sea, terrain)
+    feet_are_ground = from_sea and terrain is None
+    zero = min(block.base for block in blocks) if feet_are_ground else lowest_ground(blocks, ground)
     if place is None:
         ground = shifted(ground, zero)
     elif zero:  # metres at that height are a little longer
         place, blocks = moved(blocks, place, place._replace(height=zero))
-        ground = ground_below(blocks, above_sea, terrain, place, Notes())
-    buildings = [
-        building_of(block, *extent)
-        for block, extent in zip(
-            progress(blocks, "buildings"), extents_of(blocks, above_sea, ground, zero), strict=True
-        )
-    ]
+        ground = ground_below(blocks, from_sea, terrain, place)
+    extents = extents_of(blocks, from_sea, ground, zero)
+    buildings = buildings_of(blocks, extents, notes)
     source = notes.source(path.name, "GeoJSON")
     city = City.from_buildings(
         buildings,
@@ -173,9 +179,20 @@ def read_geojson(
     return city
 
 
-def kind_of_geometry(feature: Mapping[str, Any]) -> Any:
+def read_footprints(path: Path, notes: Notes) -> tuple[list[Footprint], Any]:
+    """All footprints of a file, and the reference system that it names; the rest of the file is forgotten."""
+    documents = read_json(path)
+    features = [feature for document in documents for feature in features_of(document, path)]
+    footprints = footprints_of(features, notes)
+    if not footprints:
+        kinds = count(kind_of_geometry(feature) for feature in features)
+        raise ValueError(f"{path.name} has no polygon with an area; its features are {kinds}")
+    return footprints, declared_system(documents[0])
+
+
+def kind_of_geometry(feature: Mapping[str, Any]) -> str:
     geometry = feature.get("geometry")
-    return geometry.get("type") if isinstance(geometry, dict) else geometry
+    return str(geometry.get("type") if isinstance(geometry, dict) else geometry)[:40]
 
 
 def note_system(notes: Notes, system: System | None, given: Any, declared: Any, height_unit: str | None) -> None:
@@ -191,84 +208,113 @@ def note_system(notes: Notes, system: System | None, given: Any, declared: Any, 
         notes.add("derived", f"heights without a unit are in {unit}", count=0)
 
 
-def blocks_of(footprints: Sequence[Footprint], wording: Wording, notes: Notes) -> list[Block]:
-    """Buildings and their parts in the coordinates of the file, with the heights that are known."""
-    heights = [heights_of(footprint, wording, notes) for footprint in footprints]
-    kinds = kinds_of(footprints, [not np.isnan(top) for _, top in heights])
-    others = kinds.count(OTHER)
-    if others:
-        notes.add("derived", f"{OTHER}: polygons that are no building and have no height", count=others)
-    return [
-        Block(footprint, kind, footprint.polygons, base, top)
-        for footprint, kind, (base, top) in zip(footprints, kinds, heights, strict=True)
+def note_ground(notes: Notes, from_sea: bool, terrain: Any) -> None:
+    """Say what the ground was made of."""
+    if isinstance(terrain, LEVEL):
+        notes.add("derived", f"level ground at {terrain:g} m, as given", count=0)
+    elif terrain is not None:
+        notes.add("derived", "ground from the terrain given", count=0)
+    elif from_sea:
+        notes.add("derived", "ground through the feet of the buildings, linear in between", count=0)
+    else:
+        notes.add("derived", "level ground at z = 0", count=0)
+
+
+def blocks_of(footprints: Sequence[Footprint], wording: Wording, path: Path) -> list[Block]:
+    """Buildings and their parts in the coordinates of the file, with what it says about their heights."""
+    heights = [heights_of(footprint.properties, wording) for footprint in footprints]
+    kinds = kinds_of(footprints, [stated.own for stated in heights])
+    blocks = [
+        Block(footprint, kind, footprint.polygons, stated)
+        for footprint, kind, stated in zip(footprints, kinds, heights, strict=True)
         if kind != OTHER
     ]
-
-
-def with_heights(blocks: Sequence[Block], wording: Wording, notes: Notes, path: Path) -> list[Block]:
-    """All blocks with a height; parts without one wait for their outline. `ValueError` where none is known."""
-    unknown = [block for block in blocks if np.isnan(block.top) and block.kind == BUILDING]
-    if unknown and wording.default_height is None:
-        known = sorted({key for block in blocks for key in block.footprint.properties})
+    if not blocks:
         raise ValueError(
-            f"{len(unknown)} of {len(blocks)} buildings in {path.name} have no height that can be understood, with "
-            f"height={wording.height!r}, nor storeys; the first is {unknown[0].footprint.label!r} with "
-            f"{unknown[0].footprint.properties.get(str(wording.height))!r}. Properties in the file: "
-            f"{', '.join(known) or 'none'}. Pass default_height=10.0, or height='one of them', or a number for all"
+            f"{path.name} has no building: none of its {len(kinds)} polygons has a height, or is tagged as one"
         )
-    for block in unknown:
-        notes.add("assumed", f"height of {wording.default_height:g} m (default_height)", block.footprint.label)
-    return [
-        block._replace(top=max(float(wording.default_height), block.base + 1.0))
-        if np.isnan(block.top) and block.kind == BUILDING and wording.default_height is not None
-        else block
-        for block in blocks
-    ]
+    return blocks
 
 
-def overridden_by_parts(blocks: Sequence[Block], notes: Notes) -> list[Block]:
-    """Bodies without the outlines that are described by their parts; what no part covers stays as high as it was."""
-    parts = [block for block in blocks if block.kind == PART]
-    outlines = [block for block in blocks if block.kind != PART]
-    if not parts:
-        notes.add("taken", BUILDING, count=len(blocks))
-        return list(blocks)
-    kept: list[Block] = []
-    heirs: dict[int, float] = {}
-    for block, members in zip(
-        outlines, without_parts([b.plan for b in outlines], [p.plan for p in parts]), strict=True
-    ):
-        heirs |= {number: max(heirs.get(number, 0.0), block.top) for number in members}
-        if not members:
-            kept.append(block)
-            continue
-        notes.add("derived", "outline overridden by its parts", block.footprint.label)
-        rest = rest_of(block.plan, [parts[number].plan for number in members])
-        if not rest.is_empty:
-            notes.add("derived", "what no part covers, as high as its outline", block.footprint.label)
-            kept.append(block._replace(plan=rest))
-    for number, part in enumerate(parts):
-        if np.isnan(part.top):
-            if number not in heirs:
-                notes.add("left out", "part without height and outline", part.footprint.label)
-                continue
-            notes.add("derived", "part as high as its outline", part.footprint.label)
-            part = part._replace(top=max(heirs[number], part.base + 1.0))
-        kept.append(part)
-    notes.add("taken", BUILDING, count=sum(block.kind != PART for block in kept))
-    notes.add("taken", PART, count=sum(block.kind == PART for block in kept))
-    return kept
-
-
-def mostly_raised(blocks: Sequence[Block], notes: Notes) -> bool:
+def mostly_raised(blocks: Sequence[Block], wording: Wording, notes: Notes) -> bool:
     """Whether bases are heights above the sea, as most of them are not at 0; says so."""
-    if 2 * sum(block.base >= 1.0 for block in blocks) <= len(blocks):
+    if not isinstance(wording.base, str) or wording.base == OSM_BASE:
+        return False
+    if 2 * sum(abs(block.heights.base) >= 1.0 for block in blocks) <= len(blocks):
         return False
     notes.add("assumed", "heights above the sea, as most bases are above 1 m (heights_above='ground' if not)", count=0)
     return True
 
 
-def building_of(block: Block, bottom: float, top: float) -> Building:
+def from_the_ground(blocks: Sequence[Block], wording: Wording, notes: Notes) -> list[Block]:
+    """The blocks with base and top above the ground."""
+    found = []
+    for block in blocks:
+        base, top, done = above_ground(block.heights, wording)
+        found.append(block._replace(base=base, top=top))
+        for kind, what in done:
+            notes.add(kind, what, block.label)
+    return found
+
+
+def from_the_sea(blocks: Sequence[Block], wording: Wording, ground: Terrain | float, notes: Notes) -> list[Block]:
+    """The blocks with base and top above the sea; where no base is stated, it is the lowest ground nearby."""
+    baseless = [n for n, block in enumerate(blocks) if np.isnan(block.heights.base)]
+    lowest = np.full(len(blocks), ground if not isinstance(ground, Terrain) else np.nan)
+    if isinstance(ground, Terrain):
+        lowest[baseless] = [low for low, _ in ranges_under([blocks[n] for n in baseless], ground)]
+    stated = [block.heights for block in blocks if not np.isnan(block.heights.top)]
+    from_base = 2 * sum(heights.top <= heights.base for heights in stated) > len(stated)
+    if from_base:
+        notes.add("assumed", "roofs are counted from the bases, as most are not above them", count=0)
+    found = []
+    for block, low in zip(blocks, lowest, strict=True):
+        base, top, done = above_sea(block.heights, wording, float(low), from_base)
+        found.append(block._replace(base=base, top=top))
+        for kind, what in done:
+            notes.add(kind, what, block.label)
+    return found
+
+
+def with_default(
+    blocks: Sequence[Block],
+    wording: Wording,
+    default_height: float | None,
+    from_sea: bool,
+    path: Path,
+    notes: Notes,
+) -> list[Block]:
+    """All buildings with a height; parts without one wait for their outline. `ValueError` where none is known."""
+    unknown = [block for block in blocks if np.isnan(block.top) and block.kind == BUILDING]
+    if unknown and default_height is None:
+        values = [block.footprint.properties.get(str(wording.height)) for block in unknown[:FIRST]]
+        first = ", ".join(f"{block.label!r} with {value!r}" for block, value in zip(unknown, values, strict=False))
+        known = sorted({key for block in blocks for key in block.footprint.properties})
+        more = f" and {len(known) - MOST_NAMES} more" if len(known) > MOST_NAMES else ""
+        raise ValueError(
+            f"{len(unknown)} of {len(blocks)} buildings in {path.name} have no height that can be understood, with "
+            f"height={wording.height!r}, nor storeys; first {first:.300}. Properties in the file: "
+            f"{', '.join(known[:MOST_NAMES]) or 'none'}{more}. "
+            "Pass default_height=10.0, or height='one of them', or a number for all"
+        )
+    for block in unknown:
+        notes.add("assumed", f"height of {default_height:g} m (default_height)", block.label)
+    return [
+        block._replace(top=block.base + default_height if from_sea else max(float(default_height), block.base + 1.0))
+        if np.isnan(block.top) and block.kind == BUILDING and default_height is not None
+        else block
+        for block in blocks
+    ]
+
+
+def buildings_of(blocks: Sequence[Block], extents: Sequence[tuple[float, float]], notes: Notes) -> list[Building]:
     """A prism over each polygon."""
-    parts = [part for polygon in block.plan.geoms for part in convex_parts(polygon)]
-    return Building(tuple(extrude(part, bottom, top) for part in parts), block.footprint.name)
+    buildings = []
+    for block, (bottom, top) in zip(progress(blocks, "buildings"), extents, strict=True):
+        parts = [part for polygon in block.plan.geoms for part in convex_parts(polygon)]
+        if parts:
+            pieces = tuple(extrude(part, bottom, top) for part in parts)
+            buildings.append(Building(pieces, block.footprint.name))
+        else:
+            notes.add("left out", "polygon without area", block.label)
+    return buildings

@@ -1,13 +1,23 @@
-"""Where the heights of a footprint stand among its properties, and what they mean: metres, or storeys."""
+"""What the properties of a feature say about heights: metres or storeys, above the ground or above the sea.
 
+Reading comes first and decides nothing; then one rule each for heights above ground and above the sea makes an
+underside and a roof of what was read. In doubt both take the lower underside and the higher roof: the safe side.
+"""
+
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
+from uavlab.city.lengths import length_in_metres, number_of
 
-from uavlab.city.footprints import Footprint
-from uavlab.city.lengths import length_in_metres
-from uavlab.city.source import Notes
+STOREYS = ("building:levels", "num_floors")
+"""Properties that count storeys: of OpenStreetMap and of Overture."""
+
+STOREYS_BELOW = ("building:min_level", "min_floor")
+"""Properties that count the storeys that a building has not, below its underside."""
+
+COUNTING = ("levels", "floors", "storeys", "stories")
+"""Ends of the names of properties that count storeys."""
 
 
 class Wording(NamedTuple):
@@ -15,50 +25,130 @@ class Wording(NamedTuple):
 
     height: str | float
     base: str | float
-    default_height: float | None
     storey_height: float
+    """[m]"""
     unit: float
+    """Metres per unit, where a height has none."""
 
 
-def heights_of(footprint: Footprint, wording: Wording, notes: Notes) -> tuple[float, float]:
-    """Base and top of a footprint [m]; the top NaN where the file doesn't say."""
-    properties, unit, storey = footprint.properties, wording.unit, wording.storey_height
-    base = stated(wording.base, properties, wording)
-    if np.isnan(base):
-        storeys = first_of(properties, ("building:min_level", "min_floor"))
-        base = 0.0 if np.isnan(storeys) else storeys * storey
-    top = stated(wording.height, properties, wording)
-    if np.isnan(top):
-        if isinstance(wording.height, str) and properties.get(wording.height) not in (None, ""):
-            notes.add("derived", f"a {wording.height} that can't be understood counts as unknown", footprint.label)
-        storeys = first_of(properties, ("building:levels", "num_floors"))
-        if storeys > 0:
-            roof = length_in_metres(properties.get("roof:height"), unit)
-            roof = roof if roof >= 0 else max(0.0, np.nan_to_num(first_of(properties, ("roof:levels",)))) * storey
-            top = storeys * storey + roof
-            notes.add("derived", f"height from storeys of {storey:g} m", footprint.label)
-    if top <= 0:
-        notes.add("derived", "a height of 0 counts as unknown", footprint.label)
-        top = np.nan
+class Heights(NamedTuple):
+    """What a feature says [m]; NaN where it says nothing that can be understood."""
+
+    base: float
+    """Of the underside, as stated."""
+    lift: float
+    """Of the underside above ground, from storeys."""
+    top: float
+    """Of the roof, as stated."""
+    rise: float
+    """Of the roof above ground, from storeys or one for all buildings."""
+    in_storeys: bool
+    unclear: bool
+    """Whether a height stands there that can't be understood."""
+
+    @property
+    def own(self) -> bool:
+        """Whether the feature itself has a height, not only one that holds for all."""
+        return self.top > 0 or self.in_storeys
+
+
+class Extent(NamedTuple):
+    """Underside and roof [m], NaN where they aren't known, with what was done to find them."""
+
+    base: float
+    top: float
+    done: tuple[tuple[str, str], ...]
+    """Kind and words of notes, see `uavlab.city.source.Notes`."""
+
+
+def heights_of(properties: Mapping[str, Any], wording: Wording) -> Heights:
+    """What a feature says about its heights."""
+    storeys = (wording.height, *STOREYS) if counts_storeys(wording.height) else STOREYS
+    top, rise = math.nan, from_storeys(properties, storeys, wording)
+    in_storeys, unclear = rise > 0, False
+    if not isinstance(wording.height, str):
+        rise, in_storeys = float(wording.height), False
+    elif not counts_storeys(wording.height):
+        stated = properties.get(wording.height)
+        top = length_in_metres(stated, wording.unit, max, signed=True)
+        unclear = math.isnan(top) and stated not in (None, "")
+    lift = first_number(properties, STOREYS_BELOW, min) * wording.storey_height
+    if not isinstance(wording.base, str):
+        base = float(wording.base)
+    elif counts_storeys(wording.base):
+        base, lift = math.nan, number_of(properties.get(wording.base), min) * wording.storey_height
+    else:
+        base = length_in_metres(properties.get(wording.base), wording.unit, min, signed=True)
+    return Heights(base, lift, top, rise, in_storeys, unclear)
+
+
+def counts_storeys(name: str | float) -> bool:
+    """Whether a property counts storeys, by its name."""
+    return isinstance(name, str) and (name.lower().endswith(COUNTING) or name in STOREYS_BELOW)
+
+
+def from_storeys(properties: Mapping[str, Any], names: Sequence[Any], wording: Wording) -> float:
+    """Height [m] of the storeys and the roof above them; NaN where no storeys are counted."""
+    storeys = first_number(properties, names, max)
+    if not storeys > 0:
+        return math.nan
+    roof = length_in_metres(properties.get("roof:height"), wording.unit)
+    if math.isnan(roof):
+        levels = number_of(properties.get("roof:levels"))
+        roof = 0.0 if math.isnan(levels) else levels * wording.storey_height
+    return storeys * wording.storey_height + roof
+
+
+def first_number(properties: Mapping[str, Any], names: Sequence[Any], of_several: Any) -> float:
+    """The first of several numbers of storeys that is there; else NaN."""
+    numbers = (number_of(properties.get(name), of_several) for name in names)
+    return next((number for number in numbers if not math.isnan(number)), math.nan)
+
+
+def above_ground(heights: Heights, wording: Wording) -> Extent:
+    """Underside and roof above the ground; the underside is the ground unless it is stated above it."""
+    done = notes_on(heights, wording, heights.top)
+    base = heights.base if heights.base >= 0 else heights.lift if heights.lift >= 0 else 0.0
+    top = heights.top if heights.top > 0 else heights.rise
+    if top == heights.rise and heights.in_storeys and not heights.top > 0:
+        done.append(("derived", f"height from storeys of {wording.storey_height:g} m"))
     if top <= base:
-        notes.add("mended", "underside not below the roof: taken from the ground", footprint.label)
+        done.append(("mended", "underside not below the roof: taken from the ground"))
         base = 0.0
-    return base, top
+    return Extent(base, top, tuple(done))
 
 
-def stated(what: str | float, properties: Mapping[str, Any], wording: Wording) -> float:
-    """A height [m] given for all, or by a property; NaN where that says nothing that can be understood."""
-    if not isinstance(what, str):
-        return float(what)
-    if what.endswith("levels"):
-        return length_in_metres(properties.get(what)) * wording.storey_height
-    return length_in_metres(properties.get(what), wording.unit)
+def above_sea(heights: Heights, wording: Wording, ground: float, from_base: bool) -> Extent:
+    """Underside and roof above the sea.
+
+    Parameters
+    ----------
+    ground : float
+        Lowest ground under the building [m], its underside where none is stated.
+    from_base : bool
+        Whether the roofs of this file are counted from the undersides, and only these from the sea.
+    """
+    done = notes_on(heights, wording, math.inf)
+    base = heights.base
+    if math.isnan(base):
+        base = ground
+        done.append(("derived", "underside from the ground nearby"))
+    if math.isnan(heights.top):
+        if heights.in_storeys:
+            done.append(("derived", f"height from storeys of {wording.storey_height:g} m"))
+        return Extent(base, base + heights.rise, tuple(done))
+    if heights.top > base and not from_base:
+        return Extent(base, heights.top, tuple(done))
+    if heights.top <= 0:  # neither above the underside nor above the sea
+        done += notes_on(heights, wording, heights.top)
+        return Extent(base, base + heights.rise, tuple(done))
+    if not from_base:
+        done.append(("mended", "roof not above its underside: counted from there"))
+    return Extent(base, base + heights.top, tuple(done))
 
 
-def first_of(properties: Mapping[str, Any], names: Sequence[str]) -> float:
-    """The first of several numbers that is there; else NaN."""
-    for name in names:
-        number = length_in_metres(properties.get(name))
-        if not np.isnan(number):
-            return number
-    return np.nan
+def notes_on(heights: Heights, wording: Wording, top: float) -> list[tuple[str, str]]:
+    """Notes about a height that stands there and is none."""
+    if heights.unclear:
+        return [("derived", f"a {wording.height} that can't be understood counts as unknown")]
+    return [("derived", "a height of 0 or less counts as unknown")] if top <= 0 else []

@@ -2,43 +2,66 @@
 
 import math
 import re
+from collections.abc import Callable, Iterable
 from typing import Any
 
 FOOT, INCH = 0.3048, 0.0254
 
-PLAIN = re.compile(r"[~≈]?\s*\+?(\d+(?:[.,]\d+)?|[.,]\d+)\s*(m|metres?|meters?|ft|feet|foot)?\.?\s*\+?", re.IGNORECASE)
-FEET_AND_INCHES = re.compile(r"(\d+(?:\.\d+)?)\s*['′]\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|″|''))?")
+NUMBER = r"\d+(?:[.,]\d+)?|[.,]\d+"
+PLAIN = re.compile(rf"[~≈]?\s*([+-]?)\s*({NUMBER})\s*(m|metres?|meters?|ft|feet|foot)?\.?\s*\+?", re.IGNORECASE)
+FEET_AND_INCHES = re.compile(
+    r"(\d+(?:\.\d+)?)\s*(?:['′]|ft\.?)\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|″|''|in\.?))?", re.IGNORECASE
+)
+THOUSANDS = re.compile(r"\d{1,3},\d{3}")
+"""May be a thousand and more, or a decimal comma: nobody can tell."""
 
 
-def length_in_metres(value: Any, unit: float = 1.0) -> float:
-    """A length as a number or as text, in metres; NaN if it isn't understood, below 0 or not finite.
+def length_in_metres(
+    value: Any, unit: float = 1.0, of_several: Callable[[Iterable[float]], float] = max, signed: bool = False
+) -> float:
+    """A length as a number or as text, in metres; NaN if it isn't understood or not finite.
 
     Parameters
     ----------
     value : number or str
-        Of several, as in "4;5", the largest counts.
     unit : float
         Metres per unit, where the text names none.
+    of_several : max or min
+        Which of several lengths counts, as in "4;5": the largest of roofs, the smallest of undersides.
+    signed : bool
+        Whether a length below 0 is one, as heights above the sea may be; else NaN.
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         return math.nan
-    if not isinstance(value, str):
-        try:
-            number = float(value) * unit
-        except OverflowError:
-            return math.nan
-        return number if 0 <= number < math.inf else math.nan
-    lengths = [one_length(part.strip(), unit) for part in value.split(";")]
-    return math.nan if any(map(math.isnan, lengths)) else max(lengths)
+    try:
+        lengths = (
+            [one_length(part.strip(), unit) for part in value.split(";")]
+            if isinstance(value, str)
+            else [float(value) * unit]
+        )
+    except OverflowError:  # whole numbers of hundreds of digits
+        return math.nan
+    if not all(math.isfinite(length) and (signed or length >= 0) for length in lengths):
+        return math.nan
+    return of_several(lengths)
 
 
 def one_length(text: str, unit: float) -> float:
     plain = PLAIN.fullmatch(text)
     if plain:
-        number, name = plain.groups()
+        sign, number, name = plain.groups()
+        if THOUSANDS.fullmatch(number):
+            return math.nan
         factor = unit if name is None else 1.0 if name.lower().startswith("m") else FOOT
-        return float(number.replace(",", ".")) * factor
+        return float(sign + number.replace(",", ".")) * factor
     imperial = FEET_AND_INCHES.fullmatch(text)
     if imperial:
         return float(imperial[1]) * FOOT + float(imperial[2] or 0.0) * INCH
     return math.nan
+
+
+def number_of(value: Any, of_several: Callable[[Iterable[float]], float] = max) -> float:
+    """A number of storeys as a number or as text; NaN if it isn't understood, below 0, or a length."""
+    if isinstance(value, str) and any(letter.isalpha() or letter in "'\"′″" for letter in value):
+        return math.nan
+    return length_in_metres(value, 1.0, of_several)
