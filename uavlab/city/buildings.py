@@ -222,7 +222,7 @@ def checked_ring(ring: npt.ArrayLike, what: str) -> np.ndarray:
 
 
 def is_convex(polygon: shapely.Polygon) -> bool:
-    return not polygon.interiors and bool(np.isclose(polygon.area, polygon.convex_hull.area, rtol=1e-9, atol=0))
+    return not polygon.interiors and polygon.convex_hull.area - polygon.area <= 1e-9 * polygon.area
 
 
 def convex_parts(polygon: shapely.Polygon) -> list[np.ndarray]:

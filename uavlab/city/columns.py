@@ -114,6 +114,33 @@ def area_of(polygon, count):
 
 
 @compiled
+def touch(occupied, triangles, ends, inset):
+    """Mark the voxels that convex solids reach into by more than `inset`, in place.
+
+    The surface of solid n are the triangles (T, 3, 3) [cells from the corner of the map] from ends[n − 1] to ends[n].
+    """
+    begin = 0
+    for end in ends:
+        surface = triangles[begin:end].copy()
+        begin = end
+        window = np.empty((2, 2), np.int64)
+        for axis in range(2):
+            least, most = surface[0, 0, axis], surface[0, 0, axis]
+            for triangle in surface:
+                for corner in triangle:
+                    least, most = min(least, corner[axis]), max(most, corner[axis])
+            window[axis] = columns_between(least, most, inset, occupied.shape[axis])
+        shape = (window[0, 1] - window[0, 0], window[1, 1] - window[1, 0])
+        if shape[0] == 0 or shape[1] == 0:
+            continue
+        for axis in range(2):
+            surface[:, :, axis] -= window[axis, 0]
+        low, high = np.full(shape, np.inf), np.full(shape, -np.inf)
+        widen(surface, inset, low, high)
+        fill(occupied[window[0, 0] : window[0, 1], window[1, 0] : window[1, 1]], low, high, inset)
+
+
+@compiled
 def fill(occupied, low, high, inset):
     """Mark the voxels [cells] (nx, ny, nz) that ranges of heights (nx, ny) reach into by more than `inset`."""
     for i in range(low.shape[0]):

@@ -173,8 +173,8 @@ class City:
         occupied = np.zeros(shape, dtype=bool)
         if top is not None:
             mark_ground(occupied, top, cell, corner[2])
-        for building in buildings:
-            rasterise(building.hulls, occupied, cell, corner, voxels)
+        hulls = (hull for building in buildings for hull in building.hulls)
+        rasterise(hulls, occupied, cell, corner, voxels)
         return cls(locked(occupied), cell, corner, tuple(buildings), name, reference, ground, tuple(no_fly), source)
 
     @property

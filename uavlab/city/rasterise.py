@@ -5,15 +5,19 @@ centre lies in one, the papers' rule, which loses what is thinner than a voxel.
 """
 
 from collections.abc import Iterable, Sequence
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 
 from uavlab.city.buildings import FACE_TOLERANCE, Building, Hull
-from uavlab.city.columns import fill, widen
+from uavlab.city.columns import fill, touch, widen
 
 TOUCH = 1e-6
 """What reaches less far into a voxel [m] only touches it: rounding of coordinates, not thickness."""
+
+AT_ONCE = 10_000
+"""So many pieces are rasterised in one go."""
 
 RULES = ("touched", "centres")
 
@@ -38,12 +42,14 @@ def ranges_of(triangles: np.ndarray, shape: Sequence[int], cell: float, origin: 
 
 def rasterise(hulls: Iterable[Hull], occupied: np.ndarray, cell: float, origin: np.ndarray, rule: str) -> None:
     """Mark the voxels of convex pieces, in place; what sticks out of the map is cut off."""
-    for hull in hulls:
-        if rule == "centres":
+    if rule == "centres":
+        for hull in hulls:
             mark_centres(hull, occupied, cell, origin)
-        else:
-            window, low, high = ranges_of(hull.triangles, occupied.shape, cell, origin)
-            fill(occupied[window], (low - origin[2]) / cell, (high - origin[2]) / cell, TOUCH / cell)
+        return
+    waiting = iter(hulls)
+    while surfaces := [hull.triangles for hull in islice(waiting, AT_ONCE)]:
+        triangles = (np.concatenate(surfaces) - origin) / cell
+        touch(occupied, triangles, np.cumsum([len(surface) for surface in surfaces]), TOUCH / cell)
 
 
 def mark_centres(hull: Hull, occupied: np.ndarray, cell: float, origin: np.ndarray) -> None:
