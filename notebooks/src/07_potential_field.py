@@ -231,7 +231,7 @@ lattice = astar(city, start, goal)
 curve = potential_field(city, start, goal, moves="continuous", record=True)
 for route in (curve, lattice):
     print(f"{route.planner:<16} {route.length:.1f} m, smallest clearance {route.clearance(city):.1f} m")
-assert (round(curve.clearance(city), 1), lattice.clearance(city)) == (2.5, 0.5)
+assert (round(curve.clearance(city), 1), lattice.clearance(city)) == (3.0, 0.5)
 
 # %%
 plot.plan(city, curve, lattice)
