@@ -561,7 +561,7 @@ assert -0.10 < np.median(claims["1/4 voxel"][1]) < -0.03
 assert np.median(claims["2 voxels"][1]) < np.median(claims["1 voxel"][1]) < np.median(claims["1/4 voxel"][1])
 
 # %% [markdown]
-# Not optimised, the samples are fair to within a few per cent. Optimised, they claim 6 to 7 % less than the curve costs
+# Not optimised, the samples are fair to within a few per cent. Optimised, they claim 5 to 6 % less than the curve costs
 # with legs of a quarter of a voxel, and a third less with legs of a voxel. Each optimum sits where the samples miss
 # something. (With legs of a sixteenth hardly anything is left of it, at sixteen times the work of a voxel.) A
 # comparison of optimisers that samples rewards the best cheat. So `waypoint_swarm` integrates exactly, voxel by voxel,
@@ -639,10 +639,10 @@ assert printed_iterations["PSO"] < printed_iterations["PSO-BAS"]
 
 # %% [markdown]
 # *Convergence.* Printed PSO is the first to converge, after an iteration or two, because it never gets away from its
-# first arcs. Printed ants are done with their first generation for the same reason. Who converges first may simply have
-# given up. PSO-BAS, which does get somewhere, needs 38 of its 48 iterations.
+# first arcs. Printed ants are done with their first or second generation for the same reason. Who converges first may simply have
+# given up. PSO-BAS, which does get somewhere, needs 36 of its 48 iterations.
 #
-# *Order.* PSO-BAS is ahead of PSO and of ACO in every run, as the paper says. It isn't ahead of PSO-ACO, neither by
+# *Order.* PSO-BAS is ahead of ACO in every run and of PSO in 97 % of them, as the paper says. It isn't ahead of PSO-ACO, neither by
 # evaluations nor by iterations: in our hybrid the ants are those of 09, not the printed ones, and a good route to begin
 # with beats a good search from a bad one. And ACO doesn't come before PSO: as printed, ants don't see the risk at all.
 #
@@ -714,11 +714,11 @@ assert single.table()["median"]["BAS"] > 2 * single.table()["median"]["BAS + ref
 
 # %% [markdown]
 # Tuned, all four come within a few per cent, and none of them is done after 4 000 evaluations: the lines still fall. By
-# medians PSO-BAS is the best in the end and PSO-ACO next, as in the paper; up to 2 500 evaluations it is the ants that
-# are ahead. And look at the intervals: that PSO-BAS is before PSO and before ACO is all that 60 runs on twelve maps
+# medians PSO-BAS is the best in the end and PSO-ACO next, as in the paper; up to 2 400 evaluations ants are ahead, alone
+# or with a swarm after them. And look at the intervals: that PSO-BAS is before PSO and before ACO is all that 60 runs on twelve maps
 # prove. Without refinement its lead over PSO is gone, too.
 #
-# The refinement *is* a beetle: greedy, its antennae on one waypoint at a time. It takes PSO-BAS from 10 to 2 %,
+# The refinement *is* a beetle: greedy, its antennae on one waypoint at a time. It takes PSO-BAS from 8 to 2 %,
 # and more than halves even the gap of a single beetle that has no swarm. So the paper's idea is good, in another place:
 # antennae help at the end, on a finer curve, more than in each iteration of the swarm.
 #
@@ -757,8 +757,8 @@ assert better < 0.15
 
 # %% [markdown]
 # On every map the refined optimum is below the grid's, and hardly a run of the swarm is below it. The swarm's circles
-# differ from map to map more than from seed to seed: on one campus all five runs end more than 10 % above the optimum,
-# on another four. A metaheuristic pays 4 000 evaluations for a route that is a little worse or, sometimes, a quarter
+# differ from map to map more than from seed to seed: on one campus all five runs end 10 % or more above the optimum,
+# on two others all five below it. A metaheuristic pays 4 000 evaluations for a route that is a little worse or, sometimes, a quarter
 # worse, and doesn't know which. What it has to offer is another thing: it needs no grid, and no cost that adds up along
 # the way.
 #
@@ -820,9 +820,9 @@ assert sums[0] > 5 * 8.75e-7
 assert 23 < 8.75e-7 / industry < 24.5
 
 # %% [markdown]
-# On the reference campus the swarm reaches the paper's claim and more, with $w = 4$: over 85 % less risk for some 6 %
+# On the reference campus the swarm reaches the paper's claim and more, with $w = 4$: over 85 % less risk for some 5 %
 # of length. Pure risk ($w = 0$) buys three per cent more with a quarter of the length. On random campuses it is
-# another story, as in 05: the claim is reached on two of eleven at most. And $8.75\cdot10^{-7}$ itself is 24 cells over
+# another story, as in 05: the claim is reached on three of eleven at most. And $8.75\cdot10^{-7}$ itself is 24 cells over
 # industry, on a way of 157 m that crosses 31: no campus with this table's 30 000 people per km² has that.
 
 # %%
@@ -888,16 +888,16 @@ print("samples at a quarter of a voxel claim", f"{np.median(claims['1/4 voxel'][
 # | Eq. 18 | $d$ is the distance between the antennae | it is half of it |
 # | Eqs 20, 21 | $d_0$, $\delta_0$ not given | they decide: nothing further than $20\,\delta_0$ can be reached |
 # | section 4.3 | "update through BAS" | two readings: on the best it rescues ω = 1, on the current place it doesn't |
-# | Fig. 10 | done after 55 iterations | with 200 iterations: 58 (quartiles 46 and 69): **reached** |
+# | Fig. 10 | done after 55 iterations | with 200 iterations: 64 (quartiles 54 and 71): **reached** |
 # | | before PSO, ACO and PSO-ACO | PSO and ACO stop at once, far from the optimum: **no** |
 # | | (nothing on evaluations) | an iteration of PSO-BAS costs four of PSO |
-# | Figs 9, 10 | least risk of all | printed: before PSO and ACO in all runs; before PSO-ACO in 28 % [11, 47] |
-# | | | ours: before PSO in 73 % [63, 82], PSO-ACO 48 % [35, 60], ACO 72 % [52, 90] |
-# | | | ours, no refinement: before PSO in 44 % [31, 58]: **partly** |
-# | Table 4 | −86 % risk, +15 % length | reference campus −86 %, +6 %; random ones: 2 of 11: **possible, not typical** |
+# | Figs 9, 10 | least risk of all | printed: before ACO in all runs, PSO in 97 % [92, 100], PSO-ACO in 25 % [8, 44] |
+# | | | ours: before PSO in 73 % [60, 83], PSO-ACO 55 % [38, 70], ACO 78 % [62, 92] |
+# | | | ours, no refinement: before PSO in 47 % [28, 67]: **partly** |
+# | Table 4 | −86 % risk, +15 % length | reference campus −87 %, +5 %; random ones: 3 of 11: **possible, not typical** |
 # | | 8.75·10⁻⁷ | 23.8 cells over industry: no route that long has so little |
-# | (not said) | start; how curves are measured | no arcs: 114 % instead of 1.3; samples at ¼ voxel claim −6 % |
-# | (not said) | how far from the optimum | printed 17 %, ours 2.2 % (90 %: 15); exact and refined −5 % |
+# | (not said) | start; how curves are measured | no arcs: 91 % instead of 1.6; samples at ¼ voxel claim −5 % |
+# | (not said) | how far from the optimum | printed 19 %, ours 1.6 % (90 %: 15); exact and refined −5 % |
 #
 # (Medians of gaps, 4 000 evaluations, twelve campuses; intervals are 95 %, by bootstrap over the maps.) How to smooth a
 # route, and whether it can be flown then, is the question of notebook 11.
