@@ -639,12 +639,13 @@ assert printed_iterations["PSO"] < printed_iterations["PSO-BAS"]
 
 # %% [markdown]
 # *Convergence.* Printed PSO is the first to converge, after an iteration or two, because it never gets away from its
-# first arcs. Printed ants are done with their first or second generation for the same reason. Who converges first may simply have
-# given up. PSO-BAS, which does get somewhere, needs 36 of its 48 iterations.
+# first arcs. Printed ants are done with their first or second generation for the same reason. Who converges first may
+# simply have given up. PSO-BAS, which does get somewhere, needs 36 of its 48 iterations.
 #
-# *Order.* PSO-BAS is ahead of ACO in every run and of PSO in 97 % of them, as the paper says. It isn't ahead of PSO-ACO, neither by
-# evaluations nor by iterations: in our hybrid the ants are those of 09, not the printed ones, and a good route to begin
-# with beats a good search from a bad one. And ACO doesn't come before PSO: as printed, ants don't see the risk at all.
+# *Order.* PSO-BAS is ahead of ACO in every run and of PSO in 97 % of them, as the paper says. It isn't ahead of
+# PSO-ACO, neither by evaluations nor by iterations: in our hybrid the ants are those of 09, not the printed ones, and a
+# good route to begin with beats a good search from a bad one. And ACO doesn't come before PSO: as printed, ants don't
+# see the risk at all.
 #
 # Table 3 has 200 iterations. For PSO-BAS these are four times as many evaluations:
 
@@ -714,9 +715,9 @@ assert single.table()["median"]["BAS"] > 2 * single.table()["median"]["BAS + ref
 
 # %% [markdown]
 # Tuned, all four come within a few per cent, and none of them is done after 4 000 evaluations: the lines still fall. By
-# medians PSO-BAS is the best in the end and PSO-ACO next, as in the paper; up to 2 400 evaluations ants are ahead, alone
-# or with a swarm after them. And look at the intervals: that PSO-BAS is before PSO and before ACO is all that 60 runs on twelve maps
-# prove. Without refinement its lead over PSO is gone, too.
+# medians PSO-BAS is the best in the end and PSO-ACO next, as in the paper; up to 2 400 evaluations ants are ahead,
+# alone or with a swarm after them. And look at the intervals: that PSO-BAS is before PSO and before ACO is all that 60
+# runs on twelve maps prove. Without refinement its lead over PSO is gone, too.
 #
 # The refinement *is* a beetle: greedy, its antennae on one waypoint at a time. It takes PSO-BAS from 8 to 2 %,
 # and more than halves even the gap of a single beetle that has no swarm. So the paper's idea is good, in another place:
@@ -757,10 +758,10 @@ assert better < 0.15
 
 # %% [markdown]
 # On every map the refined optimum is below the grid's, and hardly a run of the swarm is below it. The swarm's circles
-# differ from map to map more than from seed to seed: on one campus all five runs end 10 % or more above the optimum,
-# on two others all five below it. A metaheuristic pays 4 000 evaluations for a route that is a little worse or, sometimes, a quarter
-# worse, and doesn't know which. What it has to offer is another thing: it needs no grid, and no cost that adds up along
-# the way.
+# differ from map to map more than from seed to seed: on one campus all five runs end 10 % or more above the optimum, on
+# two others all five below it. A metaheuristic pays 4 000 evaluations for a route that is a little worse or, sometimes,
+# a quarter worse, and doesn't know which. What it has to offer is another thing: it needs no grid, and no cost that
+# adds up along the way.
 #
 # ## Table 4
 #
@@ -821,8 +822,8 @@ assert 23 < 8.75e-7 / industry < 24.5
 
 # %% [markdown]
 # On the reference campus the swarm reaches the paper's claim and more, with $w = 4$: over 85 % less risk for some 5 %
-# of length. Pure risk ($w = 0$) buys three per cent more with a quarter of the length. On random campuses it is
-# another story, as in 05: the claim is reached on three of eleven at most. And $8.75\cdot10^{-7}$ itself is 24 cells over
+# of length. Pure risk ($w = 0$) buys three per cent more with a quarter of the length. On random campuses it is another
+# story, as in 05: the claim is reached on three of eleven at most. And $8.75\cdot10^{-7}$ itself is 24 cells over
 # industry, on a way of 157 m that crosses 31: no campus with this table's 30 000 people per km² has that.
 
 # %%
