@@ -10,7 +10,7 @@ import pytest
 
 from uavlab.__main__ import main
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*city.source tells all:UserWarning")
+pytestmark = pytest.mark.filterwarnings("error:.*city.source tells all:UserWarning")
 
 
 def test_writes_one_page_and_says_where(tmp_path, capsys):

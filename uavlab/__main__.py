@@ -9,6 +9,7 @@ import argparse
 import os
 import sys
 import time
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -298,7 +299,9 @@ def load_city(options: argparse.Namespace) -> tuple["City", "RiskMap | None"]:
         risk_map = reference_campus(cell=5.0 if cell is None else cell)
         city = risk_map.city
     elif Path(name).is_file():
-        city = read_city(name, cell=2.0 if cell is None else cell, **reading)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", ".*city.source tells all")  # its report is printed whole
+            city = read_city(name, cell=2.0 if cell is None else cell, **reading)
     else:
         raise ValueError(f"--city {name}: neither a known name (table1, campus) nor a file")
     if options.no_fly is not None:

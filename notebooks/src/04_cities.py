@@ -643,21 +643,9 @@ assert above["with the hill"].min() == pytest.approx(1.4, abs=0.05)
 assert above["10 to 30 m above ground"].min() >= 10
 assert above["10 to 30 m above ground"].max() <= 30
 assert legal.takeoff > 0 < legal.landing
-figure, axes = plt.subplots(figsize=(9.0, 3.6), dpi=plot.DPI, layout="constrained")
-x = valley.coordinates(0)
-ground = valley.ground[:, valley.cell_of(start)[1]]
-axes.fill_between(x, ground, -2, color="#C9B79C", label="ground")
-axes.fill_between(x, ground + 10, ground + 30, color="0.85", label="where the limits allow it")
-for house in houses:
-    (west, _, low), (east, _, high) = house.bounds
-    axes.fill_between([west, east], low, high, color="lightsteelblue", edgecolor="0.4")
-drawn = [replace(legal, planner="10 to 30 m above ground"), replace(seeing, planner="with the hill"),
-         replace(blind, planner="without the hill")]  # fmt: skip
-for route, color in zip(drawn, plot.route_colors(3), strict=True):
-    axes.plot(route.points[:, 0], route.points[:, 2], color=color, linewidth=2, label=route.planner)
-axes.set(xlabel="x, to the east [m]", ylabel="z [m]", title="Section from house to house", aspect="equal")
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1, 1))
-plot.finished(figure)
+named = {"10 to 30 m above ground": legal, "with the hill": seeing, "without the hill": blind}
+drawn = [replace(route, planner=name) for name, route in named.items()]
+plot.profile(valley, *drawn)
 
 # %% [markdown]
 # The first route is straight, and in truth it is a tunnel, up to 20.6 m below the ground. With the hill in the map the
@@ -666,10 +654,10 @@ plot.finished(figure)
 # `max_height`. They count from the ground below the UAV, not from the start: the allowed band climbs over the hill.
 # Start and goal may lie below `min_height`; then the UAV takes off and lands vertically.
 #
-# The same in 3D, as the planner sees it, in voxels:
+# The same in 3D:
 
 # %%
-scene.show(City(valley.occupied, valley.cell, valley.origin, name=valley.name), *drawn[:2])
+scene.show(valley, *drawn)
 
 # %% [markdown]
 # ## A real city
@@ -868,10 +856,7 @@ print(f"the same clearance: {np.array_equal(closed.clearance, quarter.clearance)
 assert np.array_equal(closed.clearance, quarter.clearance)
 assert not lake.polygon.buffer(-0.01).intersects(shapely.LineString(ways["lake closed"].points[:, :2]))
 folder.cleanup()
-figure = plot.section(closed, 9.0, None, *(replace(way, planner=name) for name, way in ways.items()))
-figure.axes[0].add_patch(plt.Polygon(lake.outline, facecolor="white", alpha=0.6, edgecolor="0.2", hatch="//"))
-figure.axes[0].annotate("no-fly zone", lake.outline.mean(axis=0) + np.array([0, 8]), ha="center")
-figure
+plot.section(closed, 9.0, None, *(replace(way, planner=name) for name, way in ways.items()))
 
 # %% [markdown]
 # ### Roofs and voxels from files

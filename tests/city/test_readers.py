@@ -56,6 +56,18 @@ def test_wrong_lines_are_numbered(tmp_path, lines, told):
         read_voxels(write(tmp_path / "map.3dmap", "voxel 3 4 5", *lines))
 
 
+@pytest.mark.parametrize("reader", [read_city, read_geojson])
+def test_warning_stands_at_the_callers_line_and_cuts_long_names(tmp_path, reader):
+    name = "b46c407db-2d29-11e6-9a38-393caa90be70"
+    path = write(tmp_path / "a.geojson", {"type": "FeatureCollection", "features": [feature(SQUARE, id=name)]})
+    with pytest.warns(UserWarning, match=r"height of 7 m .*b46c407db-2d29[-0-9a-f]*…") as caught:
+        city = reader(path, default_height=7.0)
+    assert [each.filename for each in caught] == [__file__]
+    assumed = next(entry for entry in city.source.of("assumed") if entry.first)
+    assert name in assumed.first[0]
+    assert name not in str(assumed)
+
+
 def test_format_is_found_by_content(tmp_path):
     collection = {"type": "FeatureCollection", "features": [feature(SQUARE, height=10)]}
     model = {"type": "CityJSON", "CityObjects": {"A": building(solid(BOX))}, "vertices": box((0, 0, 0), (10, 10, 10))}

@@ -188,12 +188,11 @@ class Building:
 
 def crease_edges(hull: Hull) -> np.ndarray:
     """Ends (2E, 3) of the edges between faces of a convex hull that don't lie in one plane."""
-    ends = []
-    for face, neighbours in enumerate(hull.neighbors):
-        for corner, neighbour in enumerate(neighbours):  # the neighbour opposite of this corner
-            if face < neighbour and not np.allclose(hull.equations[face], hull.equations[neighbour], atol=1e-6):
-                ends.append(hull.points[np.delete(hull.simplices[face], corner)])
-    return np.concatenate(ends)
+    across = hull.neighbors  # [f, c]: the face across the edge of f that lies opposite of its corner c
+    creased = ~np.isclose(hull.equations[:, None], hull.equations[across], atol=1e-6).all(axis=-1)
+    face, corner = np.nonzero(creased & (np.arange(len(across))[:, None] < across))
+    ends = hull.simplices[face[:, None], (corner[:, None] + [1, 2]) % 3]
+    return hull.points[ends].reshape(-1, 3)
 
 
 def footprint_polygon(outline: npt.ArrayLike, holes: Sequence[npt.ArrayLike], name: str) -> shapely.Polygon:

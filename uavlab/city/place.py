@@ -146,7 +146,7 @@ class System:
     def accuracy(self) -> str:
         """Words for how well its datum is known beside WGS84, without grids from a network."""
         metres = self.transformer.accuracy
-        known = f"about {max(metres, 0.0):g} m" if metres >= 0 else "unknown, usually 1 to 4 m"
+        known = f"within about {max(metres, 0.0):g} m" if metres >= 0 else "how exactly is unknown, usually 1 to 4 m"
         return f"{self.name} to WGS84: {known}"
 
 

@@ -5,6 +5,9 @@ the names of the first few things that it concerns; a warning says the part that
 """
 
 import html
+import itertools
+import sys
+import traceback
 import warnings
 from collections import defaultdict
 from dataclasses import dataclass
@@ -18,6 +21,9 @@ DOUBTS = ("assumed", "left out")
 
 FIRST = 3
 """Of so many things the names are kept."""
+
+LONGEST_NAME = 24
+"""Letters of a name that are printed; a longer one, such as a UUID, is cut. `Entry.first` has it whole."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +39,8 @@ class Entry:
     """Names of the first few that it concerns."""
 
     def __str__(self) -> str:
-        named = f" ({', '.join(self.first)}{', …' if self.count > len(self.first) else ''})" if self.first else ""
+        names = [name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…" for name in self.first]
+        named = f" ({', '.join(names)}{', …' if self.count > len(names) else ''})" if names else ""
         return f"{self.kind}: {self.count:,} × {self.what}{named}" if self.count else f"{self.kind}: {self.what}"
 
 
@@ -80,11 +87,14 @@ class Source:
         )
         return f"<table><caption>{html.escape(self.name)} ({self.format})</caption>{rows}</table>"
 
-    def warn(self, stacklevel: int = 3) -> None:
-        """One warning with all that was assumed or left out; none where nothing was."""
+    def warn(self) -> None:
+        """One warning with all that was assumed or left out, at the caller's line; none where nothing was."""
         if self.doubts:
             said = "; ".join(map(str, self.doubts))
-            warnings.warn(f"{self.name}: {said}. city.source tells all", stacklevel=stacklevel)
+            # one reader calls another: as many frames are left out as belong to the library
+            stack = traceback.walk_stack(sys._getframe())
+            inside = itertools.takewhile(lambda at: at[0].f_globals.get("__name__", "").startswith("uavlab."), stack)
+            warnings.warn(f"{self.name}: {said}. city.source tells all", stacklevel=1 + sum(1 for _ in inside))
 
 
 class Notes:
