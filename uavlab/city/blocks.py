@@ -136,7 +136,7 @@ def ground_through_feet(blocks: Sequence[Block], height: float) -> Terrain:
 
 def lowest_ground(blocks: Sequence[Block], ground: Terrain | float) -> float:
     """Of the ground under the buildings [m]."""
-    return min(low for low, _ in ranges_under(blocks, ground)) if isinstance(ground, Terrain) else float(ground)
+    return min(low for low, _ in ranges_of_blocks(blocks, ground)) if isinstance(ground, Terrain) else float(ground)
 
 
 def shifted(ground: Terrain | float, zero: float) -> Terrain | float:
@@ -146,33 +146,37 @@ def shifted(ground: Terrain | float, zero: float) -> Terrain | float:
     return Terrain(ground.points - [0.0, 0.0, zero], ground.triangles, beyond=ground.beyond)
 
 
-def ranges_under(blocks: Sequence[Block], surface: Terrain) -> list[tuple[float, float]]:
-    """Lowest and highest ground under each footprint [m].
+def ranges_of_blocks(blocks: Sequence[Block], surface: Terrain) -> list[tuple[float, float]]:
+    """Lowest and highest ground under each block [m]."""
+    return ranges_under(plans_of(blocks), [block.label for block in blocks], surface)
+
+
+def ranges_under(plans: np.ndarray, labels: Sequence[str], surface: Terrain) -> list[tuple[float, float]]:
+    """Lowest and highest ground under each of several footprints [m].
 
     Looked for at the terrain's own corners, so that no summit is missed, along the walls, and every few metres inside.
     """
-    if not blocks:
+    if not len(plans):
         return []
-    plans = plans_of(blocks)
     summits = shapely.STRtree(shapely.points(surface.points[:, :2]))
     owner, summit = summits.query(plans, predicate="intersects")
     places = [places_in(plan) for plan in plans]
     heights = np.concatenate([surface.heights_at(np.concatenate(places)), surface.points[summit, 2]])
-    of = np.concatenate([np.repeat(np.arange(len(blocks)), [len(some) for some in places]), owner])
-    lowest, highest = np.full(len(blocks), np.inf), np.full(len(blocks), -np.inf)
+    of = np.concatenate([np.repeat(np.arange(len(plans)), [len(some) for some in places]), owner])
+    lowest, highest = np.full(len(plans), np.inf), np.full(len(plans), -np.inf)
     with np.errstate(invalid="ignore"):  # NaN spreads
         np.minimum.at(lowest, of, heights)
         np.maximum.at(highest, of, heights)
     unknown = np.flatnonzero(np.isnan(lowest))
     if len(unknown):
         raise ValueError(
-            f"terrain says nothing about the ground under {blocks[unknown[0]].label!r} and {len(unknown) - 1} other "
+            f"terrain says nothing about the ground under {labels[unknown[0]]!r} and {len(unknown) - 1} other "
             "buildings: give a larger one, or terrain.filled(), which goes on beyond its edges and through holes"
         )
     return list(zip(lowest.tolist(), highest.tolist(), strict=True))
 
 
-def places_in(plan: shapely.MultiPolygon) -> np.ndarray:
+def places_in(plan: shapely.Geometry) -> np.ndarray:
     """Points (N, 2) along the walls and on a grid inside."""
     west, south, east, north = plan.bounds
     step = max(SAMPLES, float(np.sqrt((east - west) * (north - south))) / MOST_SAMPLES)
@@ -192,7 +196,7 @@ def extents_of(
     if not isinstance(ground, Terrain):
         feet = [min(block.base - zero, ground) if from_sea else block.base for block in blocks]
         return [(foot, block.top - zero * from_sea) for foot, block in zip(feet, blocks, strict=True)]
-    ranges = ranges_under(blocks, ground)
+    ranges = ranges_of_blocks(blocks, ground)
     if from_sea:
         return [(min(b.base - zero, low), b.top - zero) for b, (low, _) in zip(blocks, ranges, strict=True)]
     return [(low + block.base, high + block.top) for block, (low, high) in zip(blocks, ranges, strict=True)]

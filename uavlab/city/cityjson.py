@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 
 from uavlab import checks
+from uavlab.city.blocks import ranges_under
 from uavlab.city.buildings import Building
 from uavlab.city.cityobjects import HOUSES, RELIEF, Thing, things_in, with_all_keys
 from uavlab.city.documents import progress, read_json
 from uavlab.city.model import City
-from uavlab.city.place import FARTHEST_LOCAL, Place, System, metres_per, system_for
+from uavlab.city.place import FARTHEST_LOCAL, Place, System, common_system, metres_per, system_for
 from uavlab.city.rasters import read_terrain
 from uavlab.city.relief import feet_of, ground_below
 from uavlab.city.solids import THINNEST, Body, Surface, enclosed, filled, has_walls
@@ -29,6 +31,12 @@ COVER = {"GenericCityObject", "PlantCover"}
 
 FLAT = 1.0
 """A cover of the ground without a volume that is lower than this [m] is none that one could hit."""
+
+STEEP = 10.0
+"""A building whose foot is farther above the ground [m] hardly stands on it."""
+
+Solid = tuple[Thing, list[np.ndarray]]
+"""A thing and its convex pieces [m]."""
 
 LEAST, MOST = 0.1, 100e3
 """Extents of a city [m]."""
@@ -48,9 +56,10 @@ def read_cityjson(
     """Read a city model from a CityJSON file (1.0 to 2.0), or a sequence of features.
 
     A building with its parts is one `Building`, filled from each surface that is not a wall down to its own lowest
-    point: passages below it are closed. Every other object with a solid or surfaces (installations on roofs, bridges,
-    furniture, trees, …) is one of its own, "BuildingInstallation mast-1", and keeps its lower surface; a surface that
-    encloses nothing becomes a slab of 0.1 m. Each takes its highest level of detail above 0.
+    point, and to the ground where that is lower: passages below it are closed. Every other object with a solid or
+    surfaces (installations on roofs, bridges, furniture, trees, …) is one of its own, "BuildingInstallation mast-1",
+    and keeps its lower surface; a surface that encloses nothing becomes a slab of 0.1 m. Each takes its highest level
+    of detail above 0.
 
     x points east, y to true north; x = y = 0 is the south-west corner of the bounding box of all these objects, z = 0
     the lowest foot of a building. `City.reference` is where that is on Earth, its height as in the file [m].
@@ -94,17 +103,20 @@ def read_cityjson(
     things = [thing for thing in found if thing.kind != RELIEF]
     if not things:
         raise ValueError(f"{path.name} has no building, bridge or other solid: {told(notes)}")
-    system = system_of_file(documents[0], things, crs, path.name, notes)
+    system = system_of_file(documents, things, crs, path.name, notes)
     factor = metres_per_height(system, height_unit, notes)
     rough = factor * float(corners_of(things)[:, 2].min())
     placed = placed_in(found, system, factor, rough)[1]
     low = rough + lowest_foot(placed)
     place, placed = placed_in(found, system, factor, low)
     relief = [surface for thing in placed if thing.kind == RELIEF for body in thing.bodies for surface in body.surfaces]
-    buildings, feet = buildings_of([thing for thing in placed if thing.kind != RELIEF], notes)
-    if not buildings:
+    solids, feet = solids_of([thing for thing in placed if thing.kind != RELIEF], notes)
+    if not solids:
         raise ValueError(f"nothing in {path.name} has a height: {told(notes)}")
     ground = ground_of(terrain, relief, feet, place, low, notes)
+    if terrain is not None or relief:  # else it goes through the feet
+        solids = grounded(solids, ground, notes)
+    buildings = [solid_of(pieces, thing, notes) for thing, pieces in solids]
     source = notes.source(path.name, "CityJSON")
     city = City.from_buildings(
         buildings,
@@ -127,16 +139,17 @@ def told(notes: Notes) -> str:
 
 
 def system_of_file(
-    document: Mapping[str, Any], things: Sequence[Thing], crs: str | int | None, file: str, notes: Notes
+    documents: Sequence[Mapping[str, Any]], things: Sequence[Thing], crs: str | int | None, file: str, notes: Notes
 ) -> System | None:
     """The reference system of the coordinates; None for metres of an unknown place.
 
     Models without a system are metres of a place of their own; degrees are such that all lies within a degree.
     """
-    metadata = document.get("metadata") or {}
-    if not isinstance(metadata, dict):
-        raise ValueError(f"{file}: 'metadata' is malformed: it must be an object {{...}}, got {metadata!r:.60}")
-    declared = metadata.get("referenceSystem")
+    for document in documents:
+        metadata = document.get("metadata") or {}
+        if not isinstance(metadata, dict):
+            raise ValueError(f"{file}: 'metadata' is malformed: it must be an object {{...}}, got {metadata!r:.60}")
+    declared = common_system([(each.get("metadata") or {}).get("referenceSystem") for each in documents], file)
     corners = corners_of(things)[:, :2]
     bounds = (*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist())
     nameless = crs is None and declared is None
@@ -224,16 +237,53 @@ def corners_of(things: Iterable[Thing]) -> np.ndarray:
     return np.concatenate([ring for thing in things for ring in rings_of(thing)])
 
 
-def buildings_of(things: Sequence[Thing], notes: Notes) -> tuple[list[Building], np.ndarray]:
-    """Things [m] as solids, and the corners (N, 3) that buildings stand on."""
-    buildings, feet = [], [np.empty((0, 3))]
+def solids_of(things: Sequence[Thing], notes: Notes) -> tuple[list[Solid], np.ndarray]:
+    """Things [m] with their convex pieces, and the corners (N, 3) that buildings stand on."""
+    solids, feet = [], [np.empty((0, 3))]
     for thing in progress(things, "objects"):
         pieces = house(thing, feet, notes) if thing.kind in HOUSES else obstacle(thing, notes)
         if pieces:
-            buildings.append(solid_of(pieces, thing, notes))
+            solids.append((thing, pieces))
             for kind, key in thing.sources:
                 notes.add("taken", kind, key)
-    return buildings, np.concatenate(feet)
+    return solids, np.concatenate(feet)
+
+
+def grounded(solids: Sequence[Solid], ground: Terrain | float, notes: Notes) -> list[Solid]:
+    """The same solids, of which buildings reach down to the lowest ground under them: no gap is left open.
+
+    Where that is far below, or the roof is, the ground is likely of other heights than the file.
+    """
+    houses = [n for n, (thing, _) in enumerate(solids) if thing.kind in HOUSES]
+    corners = [np.concatenate(solids[n][1]) for n in houses]
+    names = [solids[n][0].name for n in houses]
+    if isinstance(ground, Terrain):
+        plans = np.array([shapely.convex_hull(shapely.MultiPoint(each[:, :2])) for each in corners], dtype=object)
+        lowest = [low for low, _ in ranges_under(plans, names, ground)]
+    else:
+        lowest = [ground] * len(houses)
+    found = list(solids)
+    for n, low, each, name in zip(houses, lowest, corners, names, strict=True):
+        bottom, top = each[:, 2].min(), each[:, 2].max()
+        if low >= top:
+            notes.add(
+                "assumed", "Building is wholly below the ground: is its terrain in the heights of the file?", name
+            )
+        elif low < bottom - THINNEST:
+            thing, pieces = solids[n]
+            found[n] = thing, [down_to(low, piece, bottom) for piece in pieces]
+            if bottom - low > STEEP:
+                what = f"Building more than {STEEP:g} m above the ground, filled down to it: is that in its heights?"
+                notes.add("assumed", what, name)
+            else:
+                notes.add("derived", "Building filled down from its foot to the lowest ground below", name)
+    return found
+
+
+def down_to(low: float, piece: np.ndarray, bottom: float) -> np.ndarray:
+    """A convex piece whose foot, where it stands at `bottom`, is lengthened to a height [m]."""
+    foot = piece[piece[:, 2] < bottom + THINNEST]
+    return np.vstack([piece, np.column_stack([foot[:, :2], np.full(len(foot), low)])])
 
 
 def solid_of(pieces: Sequence[np.ndarray], thing: Thing, notes: Notes) -> Building:

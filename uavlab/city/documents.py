@@ -19,6 +19,16 @@ NO_NUMBER = re.compile(r'"(?:[^"\\]|\\.)*"|(NaN|-?Infinity)')
 """Texts, to step over them, and what Python's parser takes for a number but JSON doesn't know."""
 
 
+NO_TEXT = {
+    b"\x1f\x8b": "it is packed with gzip: unpack it first",
+    b"PK\x03\x04": "it is a zip archive: unpack it first",
+    b"\xff\xfe": "it is UTF-16: save it as UTF-8",
+    b"\xfe\xff": "it is UTF-16: save it as UTF-8",
+    b"SQLi": "it is a database (GeoPackage?): export it as GeoJSON",
+}
+"""What files are whose first bytes are these, and what to do."""
+
+
 class NoNumberError(ValueError):
     """NaN or Infinity stands in a JSON text."""
 
@@ -51,7 +61,9 @@ def read_json(path: Path, objects: Callable[[list[tuple[str, Any]]], Any] | None
             documents.append(document)
             position = after_space(text, position)
     except UnicodeDecodeError as error:
-        raise ValueError(f"{path.name} is not UTF-8 text: {error.reason} at byte {error.start}") from None
+        raise ValueError(
+            f"{path.name} is not UTF-8 text: {error.reason} at byte {error.start}{advice_on(path)}"
+        ) from None
     except json.JSONDecodeError as error:
         raise ValueError(f"{path.name} is not valid JSON: {error.msg} at {place_in(error)}") from None
     except NoNumberError:
@@ -66,6 +78,13 @@ def read_json(path: Path, objects: Callable[[list[tuple[str, Any]]], Any] | None
         if not isinstance(document, dict):
             raise ValueError(f"{path.name} must hold a JSON object {{...}}, got a {type(document).__name__}")
     return documents
+
+
+def advice_on(path: Path) -> str:
+    """What to do with a file that is no text, by its first bytes; empty where they don't tell."""
+    with path.open("rb") as file:
+        start = file.read(4)
+    return next((f"; {advice}" for magic, advice in NO_TEXT.items() if start.startswith(magic)), "")
 
 
 def after_space(text: str, position: int) -> int:

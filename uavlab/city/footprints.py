@@ -1,6 +1,8 @@
 """Polygons of a GeoJSON file as footprints: mended where their rings are broken, sorted into buildings and others."""
 
-from collections.abc import Mapping, Sequence
+import json
+import re
+from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,10 +11,33 @@ import numpy as np
 import shapely
 
 from uavlab.city.documents import progress
+from uavlab.city.place import common_system
 from uavlab.city.source import Notes
 
 OTHER = "no obstacle"
 BUILDING, PART = "building", "building part"
+
+TALL = {
+    "aerialway": {"cable_car", "chair_lift", "gondola", "pylon"},
+    "bridge": {"yes", "viaduct"},
+    "generator:source": {"wind"},
+    "man_made": {
+        "bridge", "chimney", "communications_tower", "cooling_tower", "crane", "gasometer", "lighthouse", "mast",
+        "silo", "storage_tank", "tower", "water_tower", "windmill",
+    },
+    "natural": {"tree", "tree_row"},
+    "power": {"catenary_mast", "line", "minor_line", "pole", "portal", "tower"},
+}  # fmt: skip
+"""OpenStreetMap's tags of obstacles that are no buildings, by key."""
+
+TAGS = ("tags", "all_tags", "other_tags")
+"""Properties in which exports of OpenStreetMap keep tags: as an object or its text (osm2geojson, pyrosm), or as GDAL's
+text `"height"=>"12","building:levels"=>"3"`."""
+
+ARROW = re.compile(r'"((?:[^"\\]|\\.)*)"\s*=>\s*"((?:[^"\\]|\\.)*)"')
+
+WITHOUT_AREA = ("Point", "MultiPoint", "LineString", "MultiLineString", "GeometryCollection", "Polygon", "MultiPolygon")
+"""The geometries of GeoJSON, which may all be without an area."""
 
 
 class Footprint(NamedTuple):
@@ -31,6 +56,8 @@ def features_of(document: Mapping[str, Any], path: Path) -> list[Mapping[str, An
         return [document]
     if kind != "FeatureCollection" and ("coordinates" in document or "geometries" in document):
         return [{"geometry": document}]
+    if kind is None and "geometryType" in document:
+        raise ValueError(f"{path.name} is Esri JSON, not GeoJSON: ask the server for f=geojson, or convert it")
     features = document.get("features")
     if not isinstance(features, list):
         raise ValueError(
@@ -43,25 +70,65 @@ def features_of(document: Mapping[str, Any], path: Path) -> list[Mapping[str, An
     return features
 
 
-def declared_system(document: Mapping[str, Any]) -> Any:
-    """What a "crs" member names; None where there is none."""
-    crs = document.get("crs")
+def declared_system(documents: Sequence[Mapping[str, Any]], file: str) -> Any:
+    """What the "crs" members of a file name; None where there is none."""
+    return common_system([named_system(document.get("crs")) for document in documents], file)
+
+
+def named_system(crs: Any) -> Any:
+    """What a "crs" member names: a name, a code, or a link."""
     if isinstance(crs, dict) and isinstance(crs.get("properties"), dict):
-        return crs["properties"].get("name") or crs["properties"].get("code")
+        return next((crs["properties"][key] for key in ("name", "code", "href") if crs["properties"].get(key)), None)
     return crs if isinstance(crs, str | int) else None
 
 
-def footprints_of(features: Sequence[Mapping[str, Any]], notes: Notes) -> list[Footprint]:
-    """All features with polygons that have an area, mended; what has none is noted."""
+def properties_of(feature: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The properties of a feature, with the tags that stand packed in one of them, see `TAGS`."""
+    properties = feature.get("properties") or {}
+    tags = {key: value for member in TAGS for key, value in unpacked(properties.get(member)).items()}
+    return tags | {key: value for key, value in properties.items() if value is not None} if tags else properties
+
+
+def unpacked(tags: Any) -> Mapping[str, Any]:
+    """Tags from an object or a text; empty if it is neither."""
+    if isinstance(tags, str) and tags.lstrip().startswith("{"):
+        try:
+            tags = json.loads(tags)
+        except ValueError:
+            return {}
+    elif isinstance(tags, str):
+        return {re.sub(r"\\(.)", r"\1", key): re.sub(r"\\(.)", r"\1", value) for key, value in ARROW.findall(tags)}
+    return tags if isinstance(tags, dict) else {}
+
+
+def is_tall(properties: Mapping[str, Any]) -> bool:
+    """Whether a feature is tagged as an obstacle."""
+    return any(str(properties.get(key)) in values for key, values in TALL.items()) or any(
+        is_set(properties, key) for key in ("building", "building:part")
+    )
+
+
+def footprints_of(
+    features: Sequence[Mapping[str, Any]], notes: Notes, counts: Callable[[Mapping[str, Any]], bool]
+) -> list[Footprint]:
+    """All features with polygons that have an area, mended.
+
+    What has none is noted; as left out where `counts` says of its properties that it should be here.
+    """
     found: list[tuple[str, str, Mapping[str, Any]]] = []
     outlines: list[list[list[np.ndarray]]] = []
     without = raised = 0
     for index, feature in enumerate(progress(features, "features")):
         label, name, properties, rings, has_altitude = read_feature(feature, index)
         raised += has_altitude
+        geometry = feature.get("geometry") or {"type": None}
         if rings:
             found.append((label, name, properties))
             outlines.append(rings)
+        elif geometry["type"] not in (None, *WITHOUT_AREA):
+            notes.add("left out", f"geometry of type {geometry['type']!r:.40}, which GeoJSON doesn't know", label)
+        elif counts(properties):
+            notes.add("left out", f"{geometry['type'] or 'feature without geometry'} that has no outline", label)
         else:
             without += 1
     if without:
@@ -85,7 +152,7 @@ def read_feature(
     """Label, name, properties and outlines of a feature, and whether it has altitudes; `ValueError` names it."""
     label = f"feature {index} (counted from 0)"
     try:
-        properties = feature.get("properties") or {}
+        properties = properties_of(feature)
         identifier = feature.get("id", properties.get("id", properties.get("@id")))
         label = label if identifier is None else f"feature {identifier}"
         geometry = feature.get("geometry")
@@ -197,14 +264,15 @@ def is_set(properties: Mapping[str, Any], key: str) -> bool:
 def kinds_of(footprints: Sequence[Footprint], has_height: Sequence[bool]) -> list[str]:
     """What each footprint is: a building, a part of one, or no obstacle.
 
-    In a file with OpenStreetMap's `building`, other polygons are land and water, unless they have a height.
+    In a file with OpenStreetMap's `building`, other polygons are land and water, unless they have a height or are
+    tagged as something tall.
     """
     marked = any("building" in f.properties or "building:part" in f.properties for f in footprints)
     kinds = []
     for footprint, high in zip(footprints, has_height, strict=True):
         if is_set(footprint.properties, "building:part"):
             kinds.append(PART)
-        elif marked and not is_set(footprint.properties, "building") and not high:
+        elif marked and not is_tall(footprint.properties) and not high:
             kinds.append(OTHER)
         else:
             kinds.append(BUILDING)

@@ -21,7 +21,7 @@ from uavlab.city.blocks import (
     lowest_ground,
     moved,
     placed,
-    ranges_under,
+    ranges_of_blocks,
     shifted,
     with_volume,
 )
@@ -34,6 +34,7 @@ from uavlab.city.footprints import (
     declared_system,
     features_of,
     footprints_of,
+    is_tall,
     kinds_of,
 )
 from uavlab.city.heights import Wording, above_ground, above_sea, heights_of
@@ -133,12 +134,13 @@ def read_geojson(
         (checks.not_negative_number if heights_above != "sea" else checks.finite)("base", base)
     checks.one_of("heights_above", heights_above, ABOVE)
     path, notes = Path(path), Notes()
-    footprints, declared = read_footprints(path, notes)
+    wording = Wording(height, base, storey_height)
+    footprints, declared = read_footprints(path, wording, notes)
     bounds = shapely.total_bounds([footprint.polygons for footprint in footprints])
     system = system_for(bounds, declared, crs, path.name)
     factor = metres_per(height_unit) if height_unit is not None else 1.0 if system is None else system.height_factor
     note_system(notes, system, crs, declared, height_unit)
-    wording = Wording(height, base, storey_height, factor)
+    wording = wording._replace(unit=factor)
     blocks = blocks_of(footprints, wording, path)
     others = len(footprints) - len(blocks)
     place, blocks = placed(blocks, system)
@@ -179,15 +181,22 @@ def read_geojson(
     return city
 
 
-def read_footprints(path: Path, notes: Notes) -> tuple[list[Footprint], Any]:
-    """All footprints of a file, and the reference system that it names; the rest of the file is forgotten."""
+def read_footprints(path: Path, wording: Wording, notes: Notes) -> tuple[list[Footprint], Any]:
+    """All footprints of a file, and the reference system that it names; the rest of the file is forgotten.
+
+    Points and lines of obstacles, by their tags or as they have a height, are noted as left out.
+    """
+
+    def is_obstacle(properties: Mapping[str, Any]) -> bool:
+        return is_tall(properties) or heights_of(properties, wording).own
+
     documents = read_json(path)
     features = [feature for document in documents for feature in features_of(document, path)]
-    footprints = footprints_of(features, notes)
+    footprints = footprints_of(features, notes, is_obstacle)
     if not footprints:
         kinds = count(kind_of_geometry(feature) for feature in features)
         raise ValueError(f"{path.name} has no polygon with an area; its features are {kinds}")
-    return footprints, declared_system(documents[0])
+    return footprints, declared_system(documents, path.name)
 
 
 def kind_of_geometry(feature: Mapping[str, Any]) -> str:
@@ -262,11 +271,13 @@ def from_the_sea(blocks: Sequence[Block], wording: Wording, ground: Terrain | fl
     baseless = [n for n, block in enumerate(blocks) if np.isnan(block.heights.base)]
     lowest = np.full(len(blocks), ground if not isinstance(ground, Terrain) else np.nan)
     if isinstance(ground, Terrain):
-        lowest[baseless] = [low for low, _ in ranges_under([blocks[n] for n in baseless], ground)]
+        lowest[baseless] = [low for low, _ in ranges_of_blocks([blocks[n] for n in baseless], ground)]
     stated = [block.heights for block in blocks if not np.isnan(block.heights.top)]
     from_base = 2 * sum(heights.top <= heights.base for heights in stated) > len(stated)
     if from_base:
         notes.add("assumed", "roofs are counted from the bases, as most are not above them", count=0)
+    elif stated:
+        notes.add("derived", "roofs are above the sea, too, as most are above the bases", count=0)
     found = []
     for block, low in zip(blocks, lowest, strict=True):
         base, top, done = above_sea(block.heights, wording, float(low), from_base)

@@ -5,7 +5,8 @@ underside and a roof of what was read. In doubt both take the lower underside an
 """
 
 import math
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from uavlab.city.lengths import length_in_metres, number_of
@@ -16,8 +17,11 @@ STOREYS = ("building:levels", "num_floors")
 STOREYS_BELOW = ("building:min_level", "min_floor")
 """Properties that count the storeys that a building has not, below its underside."""
 
-COUNTING = ("levels", "floors", "storeys", "stories")
-"""Ends of the names of properties that count storeys."""
+COUNTING = re.compile(r"(?!.*height).*(levels$|floors|storeys|stories|etages|floor_?(count|number))", re.IGNORECASE)
+"""In the names of properties that count storeys, such as `storeysAboveGround` or `FLOOR_COUNT`."""
+
+ROOFS = ("roof:height", "roof_height")
+"""Properties that hold the height of a roof above the storeys: of OpenStreetMap and of Overture."""
 
 
 class Wording(NamedTuple):
@@ -27,7 +31,7 @@ class Wording(NamedTuple):
     base: str | float
     storey_height: float
     """[m]"""
-    unit: float
+    unit: float = 1.0
     """Metres per unit, where a height has none."""
 
 
@@ -84,7 +88,7 @@ def heights_of(properties: Mapping[str, Any], wording: Wording) -> Heights:
 
 def counts_storeys(name: str | float) -> bool:
     """Whether a property counts storeys, by its name."""
-    return isinstance(name, str) and (name.lower().endswith(COUNTING) or name in STOREYS_BELOW)
+    return isinstance(name, str) and (COUNTING.match(name) is not None or name in STOREYS_BELOW)
 
 
 def from_storeys(properties: Mapping[str, Any], names: Sequence[Any], wording: Wording) -> float:
@@ -92,7 +96,7 @@ def from_storeys(properties: Mapping[str, Any], names: Sequence[Any], wording: W
     storeys = first_number(properties, names, max)
     if not storeys > 0:
         return math.nan
-    roof = length_in_metres(properties.get("roof:height"), wording.unit)
+    roof = first_of(length_in_metres(properties.get(name), wording.unit) for name in ROOFS)
     if math.isnan(roof):
         levels = number_of(properties.get("roof:levels"))
         roof = 0.0 if math.isnan(levels) else levels * wording.storey_height
@@ -101,7 +105,11 @@ def from_storeys(properties: Mapping[str, Any], names: Sequence[Any], wording: W
 
 def first_number(properties: Mapping[str, Any], names: Sequence[Any], of_several: Any) -> float:
     """The first of several numbers of storeys that is there; else NaN."""
-    numbers = (number_of(properties.get(name), of_several) for name in names)
+    return first_of(number_of(properties.get(name), of_several) for name in names)
+
+
+def first_of(numbers: Iterable[float]) -> float:
+    """The first that is not NaN; else NaN."""
     return next((number for number in numbers if not math.isnan(number)), math.nan)
 
 

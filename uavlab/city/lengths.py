@@ -1,4 +1,4 @@
-"""Heights as people write them: "12.5", "12,5 m", "40 ft", "40'6\\"", "10+", "4;5"."""
+"""Heights as people write them: "12.5", "12,5 m", "40 ft", "40'6\\"", "10+", "4;5", "3-4"."""
 
 import math
 import re
@@ -12,6 +12,8 @@ PLAIN = re.compile(rf"[~≈]?\s*([+-]?)\s*({NUMBER})\s*(m|metres?|meters?|ft|fee
 FEET_AND_INCHES = re.compile(
     r"(\d+(?:\.\d+)?)\s*(?:['′]|ft\.?)\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|″|''|in\.?))?", re.IGNORECASE
 )
+RANGE = re.compile(rf"({NUMBER})\s*[-–]\s*({NUMBER})([^-–]*)")
+"""From one length to another, in the same unit."""
 THOUSANDS = re.compile(r"\d{1,3},\d{3}")
 """May be a thousand and more, or a decimal comma: nobody can tell."""
 
@@ -27,7 +29,7 @@ def length_in_metres(
     unit : float
         Metres per unit, where the text names none.
     of_several : max or min
-        Which of several lengths counts, as in "4;5": the largest of roofs, the smallest of undersides.
+        Which of several lengths counts, as in "4;5" or "4-5": the largest of roofs, the smallest of undersides.
     signed : bool
         Whether a length below 0 is one, as heights above the sea may be; else NaN.
     """
@@ -35,7 +37,7 @@ def length_in_metres(
         return math.nan
     try:
         lengths = (
-            [one_length(part.strip(), unit) for part in value.split(";")]
+            [one_length(part.strip(), unit) for part in RANGE.sub(r"\1\3;\2\3", value).split(";")]
             if isinstance(value, str)
             else [float(value) * unit]
         )

@@ -5,6 +5,7 @@ the city's own place, at its height (PROJ's topocentric coordinates): true east 
 stay in the vertical system of the file, whatever it is; only their unit is converted.
 """
 
+from collections.abc import Sequence
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
@@ -27,7 +28,7 @@ OUTSIDE_DEG = 5.0
 UNITS = {
     "m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0,
     "ft": 0.3048, "foot": 0.3048, "feet": 0.3048,
-    "us-ft": 1200 / 3937, "us_survey_foot": 1200 / 3937, "US survey foot": 1200 / 3937,
+    "us-ft": 1200 / 3937, "us_survey_foot": 1200 / 3937, "us survey foot": 1200 / 3937,
 }  # fmt: skip
 """Metres per unit of length."""
 
@@ -177,7 +178,7 @@ def known_system(crs: str | int, argument: str) -> System:
 
 
 def read_system(crs: Any, argument: str) -> System:
-    cure = f"give the EPSG code of the file's reference system, such as {argument}='EPSG:25832', or {argument}='local'"
+    cure = "give the EPSG code of the file's reference system, such as crs='EPSG:25832', or crs='local'"
     try:
         found = pyproj.CRS.from_user_input(crs)
     except (CRSError, TypeError, ValueError, OverflowError) as error:
@@ -186,6 +187,18 @@ def read_system(crs: Any, argument: str) -> System:
     if not (horizontal.is_geographic or horizontal.is_projected):
         raise ValueError(f"{argument}={crs!r:.80} ({found.name}) has no plane coordinates: {cure}")
     return System(found)
+
+
+def common_system(declared: Sequence[Any], file: str) -> Any:
+    """What the documents of a file name as their reference system, None if none does; `ValueError` if they differ."""
+    named = [system for system in declared if system is not None]
+    for other in named[1:]:
+        if other != named[0] and not system_of(other).crs.equals(system_of(named[0]).crs, ignore_axis_order=True):
+            raise ValueError(
+                f"{file} has coordinates in more than one reference system, {named[0]!r:.80} and {other!r:.80}: "
+                "read a file for each"
+            )
+    return named[0] if named else None
 
 
 def system_for(bounds: npt.ArrayLike, declared: Any, given: Any, file: str) -> System | None:
@@ -232,23 +245,35 @@ def check_fits(box: np.ndarray, system: System, file: str, ranges: str, in_degre
         if not (np.abs(box) <= [540, 90, 540, 90]).all():  # longitudes may go on past 180
             raise ValueError(
                 f"{file}: coordinates {ranges} are no degrees, but {system.name} has longitudes within ±180 and "
-                "latitudes within ±90: give crs='EPSG:...', the code of their system, or crs='local' for plain metres"
+                "latitudes within ±90: is their order longitude, latitude? If they are no degrees give "
+                "crs='EPSG:...', the code of their system, or crs='local' for plain metres"
+            )
+        corners = box.reshape(2, 2)
+        if degrees_outside(system, corners) > OUTSIDE_DEG and degrees_outside(system, corners[:, ::-1]) <= 0:
+            raise ValueError(
+                f"{file}: coordinates {ranges} lie outside of where {system.name} is used, and inside if the latitude "
+                "stands first: change their order to longitude, latitude"
             )
         return
-    area = system.horizontal.area_of_use
     there = system.to_lonlat(box.reshape(2, 2))
-    if area is None:
-        return
-    west, south, east, north = area.bounds
-    apart = (there[:, 0] - (west + (east - west) % 360 / 2) + 180) % 360 - 180
-    beyond = np.abs(apart) - (east - west) % 360 / 2
-    outside = max(float(beyond.max()), float((there[:, 1] - north).max()), float((south - there[:, 1]).max()))
-    if outside > OUTSIDE_DEG and (east - west) % 360 != 0:
+    outside = degrees_outside(system, there)
+    if outside > OUTSIDE_DEG:
         guess = "they look like degrees: give crs='EPSG:4326'" if in_degrees else "give crs='EPSG:...', their own"
         raise ValueError(
             f"{file}: coordinates {ranges} in {system.name} lie at longitude {there[0, 0]:.4f}°, latitude "
             f"{there[0, 1]:.4f}°, {outside:.0f}° outside of where that is used: {guess}"
         )
+
+
+def degrees_outside(system: System, lonlat: np.ndarray) -> float:
+    """How far places (N, 2) lie outside of where a system is used [degrees]; −inf if that is everywhere or unknown."""
+    area = system.horizontal.area_of_use
+    if area is None or (area.east - area.west) % 360 == 0:
+        return -np.inf
+    half = (area.east - area.west) % 360 / 2
+    apart = (lonlat[:, 0] - (area.west + half) + 180) % 360 - 180
+    beyond = np.concatenate([np.abs(apart) - half, lonlat[:, 1] - area.north, area.south - lonlat[:, 1]])
+    return float(beyond.max())
 
 
 def metres_per(unit: str, argument: str = "height_unit") -> float:
@@ -259,4 +284,5 @@ def metres_per(unit: str, argument: str = "height_unit") -> float:
     ValueError
         If it is none of these.
     """
-    return UNITS[checks.one_of(argument, unit, UNITS)]
+    known = unit.strip().lower() if isinstance(unit, str) else unit
+    return UNITS[checks.one_of(argument, known, UNITS)]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from uavlab.city.place import LOCAL, UNITS, System, system_of
+from uavlab.city.place import LOCAL, System, metres_per, system_of
 from uavlab.city.terrain import Terrain, check_pixels, filled_masks, pixels_and_edge
 
 
@@ -75,7 +75,7 @@ def read_ascii_grid(path: Path, crs: Any) -> Terrain:
     if len(values) != rows * columns:
         raise ValueError(f"{path.name} must have {rows} × {columns} heights, as its header says, got {len(values)}")
     heights = values.reshape(rows, columns)
-    heights[heights == header.get("nodata_value", -9999.0)] = np.nan
+    heights[np.isclose(heights, header.get("nodata_value", -9999.0), rtol=1e-6, atol=0.0)] = np.nan  # it may be rounded
     west = header[corner[0]] - (dx / 2 if corner[0] == "xllcenter" else 0.0)
     south = header[corner[1]] - (dy / 2 if corner[1] == "yllcenter" else 0.0)
     return Terrain.from_raster(
@@ -85,8 +85,10 @@ def read_ascii_grid(path: Path, crs: Any) -> Terrain:
 
 def system_beside(path: Path) -> System | None:
     """The reference system in the .prj file of a grid, if there is one."""
-    beside = path.with_suffix(".prj")
-    return system_of(beside.read_text(errors="replace"), beside.name) if beside.exists() else None
+    for beside in (path.with_suffix(".prj"), path.with_suffix(".PRJ")):
+        if beside.exists():
+            return system_of(beside.read_text(errors="replace"), beside.name)
+    return None
 
 
 def whole_number(name: str, value: float, path: Path) -> int:
@@ -130,8 +132,9 @@ def read_geotiff(path: Path, crs: Any) -> Terrain:
             f"{path.name} names no reference system: give crs='EPSG:...', or crs='local' for the city's metres"
         )
     system = None if isinstance(crs, str) and crs == LOCAL else system_of(declared.to_wkt() if crs is None else crs)
-    if unit in UNITS:  # otherwise that of the system
-        heights = heights * (UNITS[unit] / (1.0 if system is None else system.height_factor))
+    if unit:  # otherwise that of the system
+        factor = 1.0 if system is None else system.height_factor
+        heights = heights * (metres_per(unit, f"unit of heights in {path.name}") / factor)
     column = pixels_and_edge(0, heights.shape[1], heights.shape[1])
     row = pixels_and_edge(0, heights.shape[0], heights.shape[0])
     at = np.stack([*np.meshgrid(column, row), np.ones((len(row), len(column)))], axis=-1)

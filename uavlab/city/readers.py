@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from uavlab.city.cityjson import read_cityjson
-from uavlab.city.documents import read_json
+from uavlab.city.documents import advice_on, read_json
 from uavlab.city.geojson import read_geojson
 from uavlab.city.model import MOST_VOXELS, City
 
@@ -53,7 +53,7 @@ def read_city(path: str | Path, **options: Any) -> City:
             return read_geojson(path, **fitting(read_geojson, options, "GeoJSON"))
     raise ValueError(
         f"{path.name} is not a city that can be read. Known are GeoJSON (.geojson, .json: footprints with heights), "
-        "CityJSON (.city.json, .json, .jsonl: models with roofs) and voxel maps (.3dmap)"
+        f"CityJSON (.city.json, .json, .jsonl: models with roofs) and voxel maps (.3dmap){advice_on(path)}"
     )
 
 

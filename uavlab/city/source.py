@@ -87,14 +87,14 @@ class Source:
         )
         return f"<table><caption>{html.escape(self.name)} ({self.format})</caption>{rows}</table>"
 
-    def warn(self) -> None:
+    def warn(self, advice: str = "city.source tells all") -> None:
         """One warning with all that was assumed or left out, at the caller's line; none where nothing was."""
         if self.doubts:
             said = "; ".join(map(str, self.doubts))
             # one reader calls another: as many frames are left out as belong to the library
             stack = traceback.walk_stack(sys._getframe())
             inside = itertools.takewhile(lambda at: at[0].f_globals.get("__name__", "").startswith("uavlab."), stack)
-            warnings.warn(f"{self.name}: {said}. city.source tells all", stacklevel=1 + sum(1 for _ in inside))
+            warnings.warn(f"{self.name}: {said}. {advice}", stacklevel=1 + sum(1 for _ in inside))
 
 
 class Notes:

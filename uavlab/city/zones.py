@@ -93,6 +93,8 @@ def read_no_fly(
 ) -> tuple[NoFlyZone, ...]:
     """No-fly zones from the polygons of a GeoJSON file, for `dataclasses.replace(city, no_fly=...)`.
 
+    A point, a line or what else has no area gives no zone, which a warning says.
+
     Parameters
     ----------
     path : str or Path
@@ -110,14 +112,23 @@ def read_no_fly(
     ValueError
         If the file is broken or has no polygon, a limit can't be understood, or the city doesn't know where on Earth it
         lies.
+
+    Warns
+    -----
+    UserWarning
+        If a feature has no area.
     """
+    for bound, limit in (("lower", lower), ("upper", upper)):
+        if not isinstance(limit, str | int | float | np.integer | np.floating):
+            raise ValueError(f"{bound} must be the name of a property, or a height in metres, got {limit!r:.60}")
     path, notes = Path(path), Notes()
     documents = read_json(path)
-    zones = footprints_of([feature for document in documents for feature in features_of(document, path)], notes)
+    features = [feature for document in documents for feature in features_of(document, path)]
+    zones = footprints_of(features, notes, lambda properties: True)
     if not zones:
         raise ValueError(f"{path.name} has no polygon with an area, so no zone")
     bounds = shapely.total_bounds([zone.polygons for zone in zones])
-    declared = declared_system(documents[0])
+    declared = declared_system(documents, path.name)
     if declared is None and crs is None and city.reference is None:
         crs = LOCAL  # neither knows where on Earth it lies
     system = system_for(bounds, declared, crs, path.name)
@@ -131,6 +142,7 @@ def read_no_fly(
         for polygon in plan.geoms:
             holes = tuple(shapely.get_coordinates(ring) for ring in polygon.interiors)
             found.append(NoFlyZone(shapely.get_coordinates(polygon.exterior), low, high, holes, zone.name))
+    notes.source(path.name, "GeoJSON").warn("They close nothing: draw an outline around each")
     return tuple(found)
 
 

@@ -68,8 +68,8 @@ def raster_layer(
     Raises
     ------
     ValueError
-        If `values` isn't two-dimensional, bounds are not in order or lie elsewhere, the city has no reference for
-        `crs`, or the raster doesn't cover the city and there is no `fill`.
+        If `values` isn't two-dimensional, or below 0 with `per`, bounds are not in order or lie elsewhere, the city has
+        no reference for `crs`, or the raster doesn't cover the city and there is no `fill`.
     """
     checks.instance("city", city, City)
     factor = PER[per] if per is None else PER[checks.one_of("per", per, [name for name in PER if name])]
@@ -84,6 +84,11 @@ def raster_layer(
         checks.finite("fill", fill)
     system = None if crs is None else system_of(crs)
     raster, edges = part_around(city, raster, edges, system)
+    if per is not None and (raster < 0).any():
+        raise ValueError(
+            f"values per {per} must be at least 0, {np.count_nonzero(raster < 0)} on the map are not, the lowest "
+            f"{np.nanmin(raster):g}: if it stands for no data, make it NaN, or mask it"
+        )
     quads = pixels_of(city, raster.shape, edges, system)
     known = np.isfinite(raster.ravel())
     amounts = raster.ravel() * factor

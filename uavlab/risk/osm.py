@@ -14,7 +14,15 @@ import shapely
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.documents import read_json
-from uavlab.city.footprints import declared_system, features_of, outlines_of
+from uavlab.city.footprints import (
+    declared_system,
+    features_of,
+    is_set,
+    mended_all,
+    outlines_of,
+    properties_of,
+    ring_of,
+)
 from uavlab.city.lengths import length_in_metres
 from uavlab.city.place import system_for
 from uavlab.city.source import Notes, Source
@@ -105,7 +113,7 @@ def osm_layers(
     lines, widths, cars, areas = [], [], [], []
     for number, feature in enumerate(features):
         try:
-            properties, geometry = feature.get("properties") or {}, feature.get("geometry")
+            properties, geometry = properties_of(feature), feature.get("geometry")
             if geometry is None:
                 continue
             if geometry["type"] in ("LineString", "MultiLineString"):
@@ -124,7 +132,7 @@ def osm_layers(
         return Layers(shelter_layer(city, shelter), np.zeros(city.shape[:2]), notes.source(path.name, "GeoJSON"))
     points = np.concatenate(everything)
     bounds = np.array([*points.min(axis=0), *points.max(axis=0)])
-    system = system_for(bounds, declared_system(documents[0]), crs, path.name)
+    system = system_for(bounds, declared_system(documents, path.name), crs, path.name)
     if system is None:
         raise ValueError(
             f"{path.name} is in metres of an unknown place, which a reader has moved to the corner of the buildings: "
@@ -139,12 +147,14 @@ def osm_layers(
     centers = column_centers(city).reshape(-1, 2)
     columns = shapely.STRtree(shapely.points(centers))
     sheltered = shelter.reshape(-1)  # the same memory
-    for kind, outlines in areas:
+    lands = mended_all([[[local(ring) for ring in outline] for outline in outlines] for _, outlines in areas])
+    for (kind, _), (land, _) in zip(areas, lands, strict=True):
+        if land is None:
+            notes.add("left out", "land without area")
+            continue
         notes.add("taken", f"land as {kind}")
-        for shell, *holes in outlines:
-            polygon = shapely.make_valid(shapely.Polygon(local(shell), [local(hole) for hole in holes]))
-            inside = columns.query(polygon, predicate="contains")
-            sheltered[inside] = np.maximum(sheltered[inside], SHELTER[kind])
+        inside = columns.query(land, predicate="contains")
+        sheltered[inside] = np.maximum(sheltered[inside], SHELTER[kind])
     share = road_layer(city, [local(line) for line in lines], widths, cars_per_km=cars, lane_width=lane_width)
     if lines:
         notes.add("assumed", f"cars per km of each lane: {told_of(cars_per_km)}", count=0)
@@ -173,7 +183,7 @@ def roads_of(
 ) -> list[tuple[np.ndarray, float]]:
     """Middle lines (M, 2) of a road, and its width [m]; none for ways without cars, in tunnels, or without length."""
     lanes = LANES.get(str(properties.get("highway")))
-    if lanes is None or str(properties.get("tunnel", "no")) != "no":
+    if lanes is None or is_set(properties, "tunnel"):
         return []
     width = length_in_metres(properties.get("width"))
     told = length_in_metres(properties.get("lanes"))
@@ -186,7 +196,7 @@ def roads_of(
         width = lanes * lane_width
         notes.add("assumed", f"width of a road from the usual lanes of its class, of {lane_width:g} m")
     parts = geometry["coordinates"] if geometry["type"] == "MultiLineString" else [geometry["coordinates"]]
-    lines = [np.array([(x, y) for x, y, *_ in part], float).reshape(-1, 2) for part in parts]
+    lines = [ring_of(part) for part in parts]
     return [(line, width) for line in lines if len(np.unique(line, axis=0)) > 1]
 
 
