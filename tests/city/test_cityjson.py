@@ -720,3 +720,54 @@ def test_texts_that_are_cut_or_scrambled_raise_value_errors_alone(tmp_path, seed
                 assert isinstance(read_cityjson(path, cell=8.0), City)
             except ValueError:
                 continue
+
+
+def test_a_house_above_its_ground_is_filled_down_to_it(read):
+    under = Terrain.from_raster(np.full((4, 4), -3.0), (-100, -100, 400, 200))
+    city = read(two_houses(), houses(), cell=1, terrain=under)
+    assert [each.bounds[0, 2] for each in city.buildings] == [-3, -3]
+    assert [solid_volume(each) for each in city.buildings] == pytest.approx([1200, 1200])
+    assert not city.is_free([(5, 5, -1.5), (205, 5, -1.5)]).any()
+    assert city.source.count("derived", "filled down from its foot") == 2
+    assert city.source.doubts == ()
+
+
+@pytest.mark.parametrize("roof", [GABLE, BOX])
+def test_only_the_foot_of_a_house_is_lengthened(read, roof):
+    gable = [*box((0, 0, 0), (10, 10, 6)), [5, 0, 9], [5, 10, 9]]
+    whole = read(gable, {"h": building(solid(roof))}).buildings[0]
+    longer = read(gable, {"h": building(solid(roof))}, terrain=-2.0).buildings[0]
+    assert solid_volume(longer) == pytest.approx(solid_volume(whole) + 200)
+    assert longer.bounds[1, 2] == whole.bounds[1, 2]
+
+
+def test_a_bridge_above_its_ground_keeps_its_lower_surface(read):
+    city = read(two_houses(), {**houses(), "east": thing("Bridge", solid(shifted(BOX, 8)))}, terrain=-5.0)
+    assert city.is_free((205, 5, -2.5))
+    assert not city.is_free((5, 5, -2.5))
+
+
+def test_terrain_of_other_heights_than_the_file_is_a_doubt(read):
+    with pytest.warns(UserWarning, match=r"2 × Building more than 10 m above the ground, filled down .*\(west, east\)"):
+        read(two_houses(40), houses(), cell=2, terrain=0.0)
+    with pytest.warns(UserWarning, match=r"2 × Building is wholly below the ground"):
+        city = read(two_houses(), houses(), cell=2, terrain=50.0)
+    assert len(city.buildings) == 2
+
+
+def test_a_terrain_that_ends_at_a_house_is_refused(read):
+    small = Terrain.from_raster(np.zeros((2, 2)), (-50, -50, 100, 100))
+    with pytest.raises(ValueError, match="terrain says nothing about the ground under 'east'"):
+        read(two_houses(), houses(), terrain=small)
+
+
+def test_a_sequence_of_models_has_one_system(tmp_path):
+    def model(name, code):
+        system = {"referenceSystem": f"https://www.opengis.net/def/crs/EPSG/0/{code}"}
+        vertices = box((392_000, 5_820_000, 0), (392_010, 5_820_010, 9))
+        members = {"CityObjects": {name: building(solid(BOX))}, "vertices": vertices, "metadata": system}
+        return {"type": "CityJSON", "version": "2.0", **members}
+
+    assert len(read_cityjson(write(tmp_path / "a.jsonl", model("a", 25833), model("b", 25833))).buildings) == 2
+    with pytest.raises(ValueError, match=r"a\.jsonl has coordinates in more than one reference system"):
+        read_cityjson(write(tmp_path / "a.jsonl", model("a", 25833), model("b", 25832)))

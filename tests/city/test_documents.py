@@ -1,5 +1,6 @@
 """JSON of one object or of many, whatever stands between them; and JSON that is none."""
 
+import gzip
 import json
 import sys
 
@@ -64,3 +65,19 @@ def test_progress_is_shown_for_very_many_things_only(monkeypatch, capsys):
     assert capsys.readouterr().err == ""
     assert list(progress([1, 2, 3, 4], "features")) == [1, 2, 3, 4]
     assert "4/4" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("content", "advice"),
+    [
+        (gzip.compress(b"{}"), "packed with gzip: unpack it"),
+        (b"PK\x03\x04\xff", "a zip archive: unpack it"),
+        ('{"a": 1}'.encode("utf-16"), "UTF-16: save it as UTF-8"),
+        ('{"a": "ß"}'.encode("latin-1"), "byte 7$"),
+    ],
+)
+def test_what_is_no_text_is_refused_with_advice(tmp_path, content, advice):
+    path = tmp_path / "a.geojson"
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=rf"a\.geojson is not UTF-8 text: .*{advice}"):
+        read_json(path)

@@ -533,3 +533,143 @@ def test_whatever_is_changed_in_a_file_only_a_value_error_comes_out(tmp_path, se
                 read_geojson(path, cell=10.0, default_height=5.0)
         except ValueError:
             pass
+
+
+TAGGED = [
+    {"type": "way", "tags": {"building": "yes", "height": "45"}},  # osm2geojson
+    {"building": "yes", "tags": '{"height": "45"}'},  # pyrosm
+    {"building": "yes", "other_tags": '"note"=>"a \\"tower\\"","height"=>"45"'},  # GDAL
+    {"building": "yes", "height": None, "other_tags": '"building:levels"=>"15"'},
+]
+
+
+@pytest.mark.parametrize("properties", TAGGED)
+def test_tags_may_be_packed_in_a_property(geojson, properties):
+    park = feature(FAR, type="way", tags={"leisure": "park"})
+    city = read_geojson(geojson(feature(SQUARE, **properties), park), default_height=5)
+    assert [each.bounds[1, 2] for each in city.buildings] == [45]
+
+
+@pytest.mark.parametrize("tags", ["{height", "a park, 5 m", ["height", 3], 7, '"height"=>3'])
+def test_a_property_of_tags_may_be_anything_else(geojson, tags):
+    assert read_geojson(geojson(feature(SQUARE, height=9, tags=tags))).buildings[0].bounds[1, 2] == 9
+
+
+def point(**properties):
+    return {"type": "Feature", "properties": properties, "geometry": {"type": "Point", "coordinates": [1020, 2020]}}
+
+
+@pytest.mark.parametrize(
+    ("lost", "said"),
+    [
+        (point(man_made="mast"), "1 × Point that has no outline"),
+        (point(height="120 m", name="antenna"), "1 × Point that has no outline"),
+        (feature(*FAR, kind="LineString", building="yes", height=30), "1 × LineString that has no outline"),
+        ({"type": "Feature", "properties": {"building": "yes"}, "geometry": None}, "1 × feature without geometry"),
+        (feature([FAR], kind="PolyhedralSurface", height=5), "1 × geometry of type 'PolyhedralSurface'"),
+    ],
+)
+def test_an_obstacle_without_outline_is_left_out_with_a_warning(geojson, lost, said):
+    path = geojson(feature(SQUARE, building="yes", height=10), lost)
+    with pytest.warns(UserWarning, match=f"left out: {said}"):
+        city = read_geojson(path, crs="local")
+    assert city.source.count("left out") == 1
+
+
+def test_other_points_are_left_out_in_silence(geojson):
+    path = geojson(feature(SQUARE, building="yes", height=10), point(shop="bakery"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        city = read_geojson(path, crs="local")
+    assert city.source.count("derived", "no obstacle: points") == 1
+
+
+def test_towers_and_tanks_are_obstacles_though_no_buildings(geojson):
+    park, tank = feature(COURTYARD, leisure="park"), feature(FAR, man_made="storage_tank")
+    path = geojson(feature(SQUARE, building="yes", height=10), park, tank)
+    with pytest.raises(ValueError, match=r"1 of 2 buildings in town.geojson have no height"):
+        read_geojson(path)
+    assert [each.bounds[1, 2] for each in read_geojson(path, default_height=7).buildings] == [10, 7]
+
+
+@pytest.mark.parametrize(
+    ("levels", "height"), [("20-22", 66), ("3 – 4", 12), ("2;3", 9), ("2;3-5", 15), ("5-3", 15), ("3-", None)]
+)
+def test_of_a_range_of_storeys_the_most_count(geojson, levels, height):
+    path = geojson(feature(SQUARE, building="yes", **{"building:levels": levels}))
+    assert read_geojson(path, default_height=2).buildings[0].bounds[1, 2] == (height or 2)
+
+
+@pytest.mark.parametrize("height", ["8-12 m", "8–12", "26.25-39.37 ft"])
+def test_of_a_range_of_heights_the_highest_counts(geojson, height):
+    assert read_geojson(geojson(feature(SQUARE, height=height))).buildings[0].bounds[1, 2] == pytest.approx(
+        12, abs=1e-3
+    )
+
+
+@pytest.mark.parametrize(
+    "name", ["storeysAboveGround", "numberOfFloorsAboveGround", "FLOOR_COUNT", "NB_ETAGES", "levels"]
+)
+def test_properties_that_count_storeys_are_known_by_their_names(geojson, name):
+    assert read_geojson(geojson(feature(SQUARE, **{name: 12})), height=name).buildings[0].bounds[1, 2] == 36
+
+
+@pytest.mark.parametrize("name", ["eaves_level_m", "first_floor_height", "storeys_height", "history"])
+def test_other_properties_hold_metres(geojson, name):
+    assert read_geojson(geojson(feature(SQUARE, **{name: 12})), height=name).buildings[0].bounds[1, 2] == 12
+
+
+def test_a_roof_of_overture_stands_on_its_storeys(geojson):
+    assert read_geojson(geojson(feature(SQUARE, num_floors=4, roof_height=2.5))).buildings[0].bounds[1, 2] == 14.5
+
+
+def test_the_name_of_heights_may_be_spelled_in_capitals(geojson):
+    city = read_geojson(geojson(feature(SQUARE, HEIGHT=50), feature(FAR, HEIGHT=None)), default_height=5)
+    assert [each.bounds[1, 2] for each in city.buildings] == [50, 5]
+    assert "heights from 'HEIGHT'" in str(city.source)
+    both = geojson(feature(SQUARE, HEIGHT=50, Height=60))
+    assert read_geojson(both, default_height=5).buildings[0].bounds[1, 2] == 5
+
+
+def test_a_link_to_a_system_is_not_passed_over(geojson):
+    crs = {"type": "link", "properties": {"href": "http://example.org/26986", "type": "proj4"}}
+    path = geojson(feature([[4.36, 52.01], [4.361, 52.01], [4.361, 52.011]], height=10), crs=crs)
+    with pytest.raises(
+        ValueError, match=r"'http://example.org/26986' is no reference system .* such as crs='EPSG:25832'"
+    ):
+        read_geojson(path)
+    assert read_geojson(path, crs="EPSG:4326").reference is not None
+
+
+def test_a_sequence_has_one_system(tmp_path):
+    def collection(east, *codes):
+        ring = [[east + x, 5_820_000 + y] for x, y in ((0, 0), (10, 0), (10, 10))]
+        crs = [{"crs": {"type": "name", "properties": {"name": code}}} for code in codes]
+        return {"type": "FeatureCollection", "features": [feature(ring, height=10)]} | (crs[0] if crs else {})
+
+    def read(one, other):
+        return read_geojson(write(tmp_path / "a.geojsons", collection(392_000, one), collection(392_100, other)))
+
+    with pytest.raises(ValueError, match="more than one reference system, 'EPSG:25833' and 'EPSG:25832'"):
+        read("EPSG:25833", "EPSG:25832")
+    assert len(read("EPSG:25833", "urn:ogc:def:crs:EPSG::25833").buildings) == 2
+    half = write(tmp_path / "b.geojsons", collection(392_000, "EPSG:25833"), collection(392_100))
+    assert len(read_geojson(half).buildings) == 2
+
+
+def test_esri_json_is_no_geojson(tmp_path):
+    document = {"geometryType": "esriGeometryPolygon", "features": [{"attributes": {}, "geometry": {"rings": []}}]}
+    with pytest.raises(ValueError, match="is Esri JSON, not GeoJSON: ask the server for f=geojson"):
+        read_geojson(write(tmp_path / "a.json", document))
+
+
+def test_a_house_on_the_antimeridian_may_go_on_past_180_degrees(geojson):
+    ring = [[179.9999, 0], [180.0001, 0], [180.0001, 2e-4], [179.9999, 2e-4]]
+    city = read_geojson(geojson(feature(ring, height=10)))
+    assert city.buildings[0].bounds[1] == pytest.approx([22.264, 22.115, 10], abs=1e-3)
+
+
+def test_whether_roofs_count_from_the_sea_is_said(geojson):
+    path = geojson(feature(SQUARE, height=40, ground=30), feature(FAR, height=50, ground=31))
+    city = read_geojson(path, base="ground", heights_above="sea")
+    assert "derived: roofs are above the sea, too" in str(city.source)

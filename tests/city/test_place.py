@@ -143,3 +143,20 @@ def test_the_caller_decides_then_the_file_then_the_numbers(bounds, declared, giv
 def test_what_makes_no_sense_is_refused_with_the_cure(ask, message):
     with pytest.raises(ValueError, match=message):
         ask()
+
+
+def test_degrees_with_the_latitude_first_are_refused_where_the_system_tells():
+    munich, swapped = (11.5, 48.1, 11.6, 48.2), (48.1, 11.5, 48.2, 11.6)
+    assert system_for(munich, "EPSG:4258", None, "a.json").degrees
+    with pytest.raises(ValueError, match=r"outside of where EPSG:4258 \(ETRS89\) is used, and inside if the latitude"):
+        system_for(swapped, "EPSG:4258", None, "a.json")
+    assert system_for(swapped, "EPSG:4326", None, "a.json").degrees
+    guam = (144.7, 13.4, 144.8, 13.5)  # its maps are in NAD83, which is not said to be used there
+    assert system_for(guam, "EPSG:4269", None, "a.json").degrees
+    with pytest.raises(ValueError, match="is their order longitude, latitude"):
+        system_for((35.6, 139.7, 35.7, 139.8), "EPSG:6697", None, "a.json")
+
+
+@pytest.mark.parametrize("unit", ["us-ft", "US survey foot", " us_survey_foot "])
+def test_units_in_any_case(unit):
+    assert metres_per(unit) == 1200 / 3937

@@ -170,3 +170,36 @@ def test_geotiffs_that_cant_be_used_are_refused(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "rasterio", None)
     with pytest.raises(ImportError, match=r'pip install "uavlab\[raster\]"'):
         read_terrain(broken)
+
+
+def test_no_data_of_a_grid_may_be_rounded(tmp_path):
+    text = GRID.replace("NODATA_value -9999", "NODATA_value -3.402823e+38").replace("-9999", "-3.4028234663852886e+38")
+    assert len(read_terrain(written(tmp_path, text)).triangles) < len(read_terrain(written(tmp_path, GRID)).points) * 2
+    assert np.isnan(read_terrain(written(tmp_path, text)).heights_at([(125, 205)])).all()
+    near = GRID.replace("NODATA_value -9999", "NODATA_value 5.01")
+    with pytest.raises(ValueError, match="got -9999"):
+        read_terrain(written(tmp_path, near))
+    assert read_terrain(written(tmp_path, near.replace("-9999", "5.01"))).heights_at([(115, 205)]) == [5]
+
+
+def test_the_system_beside_a_grid_may_be_named_in_capitals(tmp_path):
+    path = written(tmp_path, GRID.replace("100", "565000").replace("200", "5934000"))
+    path.with_suffix(".PRJ").write_text(system_of(25832).crs.to_wkt("WKT1_ESRI"))
+    assert "UTM" in read_terrain(path).system.name
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("Feet", 0.3048), ("METERS", 1.0), ("US survey foot", 1200 / 3937)])
+def test_units_of_a_geotiff_in_any_case(tmp_path, unit, factor):
+    path = geotiff(tmp_path / "g.tif", np.array([[100, 200]], "int16"), Affine(5, 0, 981_000, 0, -5, 195_000), crs=2263)
+    with rasterio.open(path, "r+") as file:
+        file.units = (unit,)
+    terrain = read_terrain(path)
+    assert terrain.points[0, 2] * terrain.system.height_factor == pytest.approx(100 * factor)
+
+
+def test_a_unit_that_is_not_known_is_refused(tmp_path):
+    path = geotiff(tmp_path / "g.tif", np.array([[100, 200]], "int16"), Affine(5, 0, 565_000, 0, -5, 5_934_000))
+    with rasterio.open(path, "r+") as file:
+        file.units = ("cm",)
+    with pytest.raises(ValueError, match=r"unit of heights in g\.tif must be one of 'm', .* got 'cm'"):
+        read_terrain(path)

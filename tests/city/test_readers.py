@@ -1,5 +1,7 @@
 """Voxel maps, and finding out what format a file has."""
 
+import gzip
+
 import numpy as np
 import pytest
 from files import BOX, SQUARE, box, building, feature, solid, volume, write
@@ -121,3 +123,10 @@ def test_other_encodings_and_other_json_are_refused(tmp_path):
         read_city(path)
     with pytest.raises(ValueError, match=r"a\.json must hold a JSON object \{\.\.\.\}, got a list"):
         read_city(write(tmp_path / "a.json", "[1, 2]"))
+
+
+def test_a_packed_file_is_refused_with_advice(tmp_path):
+    path = tmp_path / "town.geojson.gz"
+    path.write_bytes(gzip.compress(b'{"type": "FeatureCollection"}'))
+    with pytest.raises(ValueError, match=r"is not a city that can be read.*packed with gzip: unpack it first"):
+        read_city(path)

@@ -88,11 +88,27 @@ def test_zones_are_read_with_their_limits(tmp_path):
         (lambda path: read_no_fly(geojson(path, upper="high"), FIELD), "upper of .* must be a height in metres"),
         (lambda path: read_no_fly(geojson(path, SQUARE[:2]), FIELD), "has no polygon with an area, so no zone"),
         (lambda path: read_no_fly(geojson(path), FIELD, crs="EPSG:4326"), "doesn't know where on Earth"),
+        (lambda path: read_no_fly(geojson(path), FIELD, lower=None), "lower must be the name of a property, or a h"),
+        (lambda path: read_no_fly(geojson(path), FIELD, upper=[9]), "upper must be the name of a property, or"),
     ],
 )  # fmt: skip
 def test_what_is_no_zone_is_refused(tmp_path, ask, message):
     with pytest.raises(ValueError, match=message):
         ask(tmp_path)
+
+
+def test_a_zone_without_area_is_left_out_with_a_warning(tmp_path):
+    path = geojson(tmp_path)
+    document = json.loads(path.read_text())
+    lost = [{"type": "Point", "coordinates": [5, 5]}, {"type": "Polygon", "coordinates": [[[1, 1], [2, 2], [1, 1]]]}]
+    document["features"] += [{"type": "Feature", "properties": {"radius": 500}, "geometry": each} for each in lost]
+    path.write_text(json.dumps(document))
+    with pytest.warns(
+        UserWarning, match="1 × Point that has no outline .*; left out: 1 × polygon without area"
+    ) as said:
+        zones = read_no_fly(path, FIELD)
+    assert len(zones) == len(said) == 1
+    assert "city.source" not in str(said[0].message)
 
 
 def test_buildings_in_a_zone_stay_obstacles():

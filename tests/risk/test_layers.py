@@ -424,3 +424,14 @@ LINE = [(0, 0), (10, 10)]
 def test_wrong_questions_are_refused_by_name(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+@pytest.mark.parametrize("per", ["m²", "km²", "pixel"])
+def test_a_density_below_0_is_no_data_that_nobody_declared(per):
+    values = np.array([[5.0, -200.0], [5.0, 5.0]])
+    with pytest.raises(ValueError, match=f"values per {per} must be at least 0, 1 on the map are not, the lowest -200"):
+        raster_layer(CITY, values, BOUNDS, per=per)
+    assert raster_layer(CITY, values, BOUNDS).min() == -200  # heights, say
+    far = np.ones((3, 40))
+    far[:, -1] = -99999.0
+    assert raster_layer(CITY, far, (100, -20, 1000, 10), per=per).min() > 0

@@ -146,3 +146,28 @@ def test_broken_roads_and_unknown_places_are_refused(town):
     for crs in (None, "local"):
         with pytest.raises(ValueError, match=r"is in metres of an unknown place, .*: give crs='EPSG:...' here and"):
             osm_layers(city, path, crs=crs)
+
+
+def test_tags_may_be_packed_in_a_property(town):
+    road = feature("LineString", [(0, 50), (140, 50)], tags={"highway": "residential", "width": "10"})
+    tunnel = feature("LineString", [(0, 90), (140, 90)], highway="primary", other_tags='"tunnel"=>"yes"')
+    wood = feature("Polygon", square(60, 0, 40), other_tags='"natural"=>"wood"')
+    city, path = town(HOUSE, road, tunnel, wood)
+    layers = osm_layers(city, path)
+    assert layers.vehicle_share.sum() * city.cell**2 == pytest.approx(140 * 10 * float(vehicle_share()), rel=2e-3)
+    assert layers.source.count("taken", "land as trees or low buildings") == 1
+
+
+def test_land_without_area_is_left_out(town):
+    city, path = town(HOUSE, WOOD, feature("Polygon", [(0, 0), (9, 9)], landuse="forest"))
+    source = osm_layers(city, path).source
+    assert source.count("left out", "land without area") == source.count("taken", "land as trees or low buildings") == 1
+
+
+def test_a_road_to_infinity_is_refused_with_its_number(town):
+    city, path = town(HOUSE, ROAD)
+    path.write_text(
+        path.read_text().replace('"LineString", "coordinates": [[', '"LineString", "coordinates": [[1e999, 0], [')
+    )
+    with pytest.raises(ValueError, match=r"feature 1 \(counted from 0\) of town.geojson is malformed.*infinite"):
+        osm_layers(city, path)

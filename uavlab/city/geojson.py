@@ -140,7 +140,7 @@ def read_geojson(
     system = system_for(bounds, declared, crs, path.name)
     factor = metres_per(height_unit) if height_unit is not None else 1.0 if system is None else system.height_factor
     note_system(notes, system, crs, declared, height_unit)
-    wording = wording._replace(unit=factor)
+    wording = wording._replace(unit=factor, height=spelled(height, footprints, notes))
     blocks = blocks_of(footprints, wording, path)
     others = len(footprints) - len(blocks)
     place, blocks = placed(blocks, system)
@@ -197,6 +197,17 @@ def read_footprints(path: Path, wording: Wording, notes: Notes) -> tuple[list[Fo
         kinds = count(kind_of_geometry(feature) for feature in features)
         raise ValueError(f"{path.name} has no polygon with an area; its features are {kinds}")
     return footprints, declared_system(documents, path.name)
+
+
+def spelled(height: str | float, footprints: Sequence[Footprint], notes: Notes) -> str | float:
+    """The property that holds heights as the file spells it: where none has its name, the one that has in capitals."""
+    if not isinstance(height, str) or any(height in footprint.properties for footprint in footprints):
+        return height
+    alike = sorted({key for f in footprints for key in f.properties if key.lower() == height.lower()})
+    if len(alike) != 1:
+        return height
+    notes.add("derived", f"heights from {alike[0]!r}", count=0)
+    return alike[0]
 
 
 def kind_of_geometry(feature: Mapping[str, Any]) -> str:

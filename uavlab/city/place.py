@@ -222,6 +222,8 @@ def system_for(bounds: npt.ArrayLike, declared: Any, given: Any, file: str) -> S
     """
     box = checks.numbers("bounds", bounds)
     in_degrees = bool((np.abs(box) <= [180, 90, 180, 90]).all())
+    if (np.abs(box) <= [540, 90, 540, 90]).all() and max(box[2] - box[0], box[3] - box[1]) < 1.0:
+        in_degrees = True  # past ±180, and too small for a city in metres
     ranges = f"({box[0]:g}, {box[1]:g}) to ({box[2]:g}, {box[3]:g})"
     if isinstance(given, str) and given == LOCAL:
         return None
