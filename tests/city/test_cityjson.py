@@ -748,9 +748,9 @@ def test_a_bridge_above_its_ground_keeps_its_lower_surface(read):
 
 
 def test_terrain_of_other_heights_than_the_file_is_a_doubt(read):
-    with pytest.warns(UserWarning, match=r"2 × Building more than 10 m above the ground, filled down .*\(west, east\)"):
+    with pytest.warns(UserWarning, match=r"2 × building more than 10 m above the ground, filled down .*\(west, east\)"):
         read(two_houses(40), houses(), cell=2, terrain=0.0)
-    with pytest.warns(UserWarning, match=r"2 × Building is wholly below the ground"):
+    with pytest.warns(UserWarning, match=r"2 × building is wholly below the ground"):
         city = read(two_houses(), houses(), cell=2, terrain=50.0)
     assert len(city.buildings) == 2
 

@@ -673,3 +673,26 @@ def test_whether_roofs_count_from_the_sea_is_said(geojson):
     path = geojson(feature(SQUARE, height=40, ground=30), feature(FAR, height=50, ground=31))
     city = read_geojson(path, base="ground", heights_above="sea")
     assert "derived: roofs are above the sea, too" in str(city.source)
+
+
+def test_undersides_of_parts_count_from_the_lowest_ground_at_the_whole_building(geojson):
+    outline, uphill = [[0, 0], [40, 0], [40, 40], [0, 40]], [[20, 0], [40, 0], [40, 40], [20, 40]]
+    part = feature(uphill, height=20, min_height=10, **{"building:part": "yes"})
+    path = geojson(feature(outline, building="yes", height=20), part)
+    slope = Terrain.from_raster(np.tile(100 + 0.5 * np.arange(-95, 205, 10.0), (30, 1)), (-100, -100, 200, 200))
+    rest, bridge = read_geojson(path, crs="local", terrain=slope, cell=5.0).buildings
+    assert rest.bounds[:, 2] == pytest.approx([0, 30])
+    assert bridge.bounds[:, 2] == pytest.approx([10, 40])  # the ground below it is from 10 to 20 m high
+
+
+def test_terrain_of_other_heights_than_the_file_is_a_doubt(geojson):
+    path = geojson(feature(SQUARE, height=140, ground=130), feature(FAR, height=150, ground=130))
+
+    def read(terrain):
+        return read_geojson(path, base="ground", heights_above="sea", terrain=terrain, crs="local", cell=5.0)
+
+    assert not read(125.0).source.doubts
+    with pytest.warns(UserWarning, match="2 × building more than 10 m above the ground, filled down to it"):
+        assert [each.bounds[0, 2] for each in read(0.0).buildings] == [0, 0]
+    with pytest.warns(UserWarning, match="1 × building is wholly below the ground"):
+        read(Terrain.from_raster(np.full((3, 3), 145.0), (-100, -100, 200, 200)))

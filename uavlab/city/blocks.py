@@ -25,6 +25,9 @@ MOST_SAMPLES = 100
 THINNEST = 1e-4
 """Twice the area of a polygon by half of its length [m]: what is thinner is rounding, and spans no volume."""
 
+STEEP = 10.0
+"""A building whose foot is farther above the ground [m] hardly stands on it."""
+
 LEVEL = (int, float, np.integer, np.floating)
 """Kinds of numbers that say how high level ground is."""
 
@@ -41,6 +44,8 @@ class Block(NamedTuple):
     base: float = np.nan
     """[m], in the file's vertical system; NaN where it isn't known."""
     top: float = np.nan
+    site: shapely.MultiPolygon | None = None
+    """Of a part, the outline in which it lies [m]: undersides count from the lowest ground there."""
 
     @property
     def label(self) -> str:
@@ -187,16 +192,41 @@ def places_in(plan: shapely.Geometry) -> np.ndarray:
 
 
 def extents_of(
-    blocks: Sequence[Block], from_sea: bool, ground: Terrain | float, zero: float
+    blocks: Sequence[Block], from_sea: bool, ground: Terrain | float, zero: float, notes: Notes
 ) -> list[tuple[float, float]]:
     """Underside and roof of each block on the map [m].
 
     Above the sea a building reaches down to the lowest ground below it: no gap is left open between them.
     """
-    if not isinstance(ground, Terrain):
-        feet = [min(block.base - zero, ground) if from_sea else block.base for block in blocks]
-        return [(foot, block.top - zero * from_sea) for foot, block in zip(feet, blocks, strict=True)]
-    ranges = ranges_of_blocks(blocks, ground)
+    if isinstance(ground, Terrain):
+        ranges, sites = ranges_of_blocks(blocks, ground), lowest_at_sites(blocks, ground)
+    else:
+        level = ground if from_sea else 0.0
+        ranges, sites = [(level, level)] * len(blocks), [level] * len(blocks)
     if from_sea:
+        for block, (low, _) in zip(blocks, ranges, strict=True):
+            note_far_ground(block.base - zero, block.top - zero, low, block.label, notes)
         return [(min(b.base - zero, low), b.top - zero) for b, (low, _) in zip(blocks, ranges, strict=True)]
-    return [(low + block.base, high + block.top) for block, (low, high) in zip(blocks, ranges, strict=True)]
+    return [
+        (min(low, site) + block.base, high + block.top)
+        for block, (low, high), site in zip(blocks, ranges, sites, strict=True)
+    ]
+
+
+def lowest_at_sites(blocks: Sequence[Block], ground: Terrain) -> list[float]:
+    """Lowest ground at the site of each part that has its underside above the ground [m]; infinite for others."""
+    raised = [n for n, block in enumerate(blocks) if block.base > 0 and block.site is not None]
+    sites = np.array([blocks[n].site for n in raised], dtype=object)
+    lowest = [np.inf] * len(blocks)
+    for n, (low, _) in zip(raised, ranges_under(sites, [blocks[n].label for n in raised], ground), strict=True):
+        lowest[n] = low
+    return lowest
+
+
+def note_far_ground(bottom: float, top: float, low: float, name: str, notes: Notes) -> None:
+    """Note a building that hardly stands on the lowest ground under it [m]: which is likely of other heights."""
+    if top <= low:
+        notes.add("assumed", "building is wholly below the ground: is its terrain in the heights of the file?", name)
+    elif bottom - low > STEEP:
+        what = f"building more than {STEEP:g} m above the ground, filled down to it: is that in its heights?"
+        notes.add("assumed", what, name)

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from uavlab import checks
-from uavlab.city.blocks import ranges_under
+from uavlab.city.blocks import STEEP, note_far_ground, ranges_under
 from uavlab.city.buildings import Building
 from uavlab.city.cityobjects import HOUSES, RELIEF, Thing, things_in, with_all_keys
 from uavlab.city.documents import progress, read_json
@@ -31,9 +31,6 @@ COVER = {"GenericCityObject", "PlantCover"}
 
 FLAT = 1.0
 """A cover of the ground without a volume that is lower than this [m] is none that one could hit."""
-
-STEEP = 10.0
-"""A building whose foot is farther above the ground [m] hardly stands on it."""
 
 Solid = tuple[Thing, list[np.ndarray]]
 """A thing and its convex pieces [m]."""
@@ -265,17 +262,11 @@ def grounded(solids: Sequence[Solid], ground: Terrain | float, notes: Notes) -> 
     found = list(solids)
     for n, low, each, name in zip(houses, lowest, corners, names, strict=True):
         bottom, top = each[:, 2].min(), each[:, 2].max()
-        if low >= top:
-            notes.add(
-                "assumed", "Building is wholly below the ground: is its terrain in the heights of the file?", name
-            )
-        elif low < bottom - THINNEST:
+        note_far_ground(bottom, top, low, name, notes)
+        if low < bottom - THINNEST:
             thing, pieces = solids[n]
             found[n] = thing, [down_to(low, piece, bottom) for piece in pieces]
-            if bottom - low > STEEP:
-                what = f"Building more than {STEEP:g} m above the ground, filled down to it: is that in its heights?"
-                notes.add("assumed", what, name)
-            else:
+            if bottom - low <= STEEP:
                 notes.add("derived", "Building filled down from its foot to the lowest ground below", name)
     return found
 

@@ -163,7 +163,7 @@ def read_geojson(
     elif zero:  # metres at that height are a little longer
         place, blocks = moved(blocks, place, place._replace(height=zero))
         ground = ground_below(blocks, from_sea, terrain, place)
-    extents = extents_of(blocks, from_sea, ground, zero)
+    extents = extents_of(blocks, from_sea, ground, zero, notes)
     buildings = buildings_of(blocks, extents, notes)
     source = notes.source(path.name, "GeoJSON")
     city = City.from_buildings(

@@ -25,8 +25,10 @@ def overridden_by_parts(blocks: Sequence[Block], notes: Notes) -> list[Block]:
         return list(blocks)
     kept: list[Block] = []
     heirs: dict[int, float] = {}
+    sites: dict[int, shapely.MultiPolygon] = {}
     for block, members in zip(outlines, without_parts(outlines, parts), strict=True):
         heirs |= {number: max(heirs.get(number, -np.inf), block.top) for number in members}
+        sites |= dict.fromkeys(members, block.plan)
         if not members:
             kept.append(block)
             continue
@@ -34,7 +36,7 @@ def overridden_by_parts(blocks: Sequence[Block], notes: Notes) -> list[Block]:
         rest = rest_of(block.plan, [parts[number].plan for number in members])
         if not rest.is_empty:
             notes.add("derived", "what no part covers, as high as its outline", block.label)
-            kept.append(block._replace(plan=rest))
+            kept.append(block._replace(plan=rest, site=block.plan))
     for number, part in enumerate(parts):
         if np.isnan(part.top):
             if number not in heirs:
@@ -42,7 +44,7 @@ def overridden_by_parts(blocks: Sequence[Block], notes: Notes) -> list[Block]:
                 continue
             notes.add("derived", "part as high as its outline", part.label)
             part = part._replace(top=max(heirs[number], part.base + 1.0))
-        kept.append(part)
+        kept.append(part._replace(site=sites.get(number)))
     for kind in (BUILDING, PART):
         if any(block.kind == kind for block in kept):
             notes.add("taken", kind, count=sum(block.kind == kind for block in kept))
