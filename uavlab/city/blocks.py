@@ -8,10 +8,10 @@ import numpy as np
 import shapely
 
 from uavlab import checks
-from uavlab.city.documents import lowest_corner
-from uavlab.city.footprints import Footprint, polygons_in
+from uavlab.city.buildings import polygons_in
+from uavlab.city.footprints import Footprint
 from uavlab.city.heights import Heights
-from uavlab.city.place import Place, System
+from uavlab.city.place import Place, System, check_extent, place_at_corner
 from uavlab.city.rasters import read_terrain
 from uavlab.city.source import Notes
 from uavlab.city.terrain import Terrain
@@ -65,9 +65,7 @@ def placed(blocks: Sequence[Block], system: System | None) -> tuple[Place | None
     if system is None:
         return None, with_plans(blocks, points - points.min(axis=0))
     lonlat = system.to_lonlat(points)
-    place = Place(*lonlat[0].tolist())
-    for _ in range(3):  # the axes turn a little when their origin moves
-        place = Place(*place.longitude_latitude(place.east_north(lonlat).min(axis=0)).tolist())
+    place = place_at_corner(lonlat)
     return place, with_plans(blocks, place.east_north(lonlat))
 
 
@@ -100,7 +98,7 @@ def with_volume(blocks: Sequence[Block], notes: Notes) -> list[Block]:
     return [blocks[n]._replace(plan=plan) for n, plan in zip(present, plans, strict=True)]
 
 
-def check_extent(blocks: Sequence[Block], system: System | None) -> None:
+def check_size(blocks: Sequence[Block], system: System | None) -> None:
     """Refuse what is no city, most of all metres that were read as degrees."""
     bounds = shapely.bounds(plans_of(blocks)).reshape(-1, 2)
     centers = bounds.reshape(-1, 2, 2).mean(axis=1)
@@ -111,7 +109,7 @@ def check_extent(blocks: Sequence[Block], system: System | None) -> None:
         else "if the coordinates are in another system, pass its code, as in crs='EPSG:4326'"
     )
     farthest = f"; the farthest from the others is {blocks[int(away.argmax())].label!r:.100}" if len(blocks) > 1 else ""
-    lowest_corner(np.column_stack([bounds, np.zeros(len(bounds))]), advice + farthest)
+    check_extent(bounds, advice + farthest)
 
 
 def ground_below(blocks: Sequence[Block], from_sea: bool, terrain: Any, place: Place | None) -> Terrain | float:

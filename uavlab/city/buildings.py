@@ -5,7 +5,7 @@ lies inside is one matrix product, its faces are what a scene draws, and anythin
 courtyard) is a union of pieces. Footprints of any shape are cut into triangles.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -234,6 +234,14 @@ def convex_parts(polygon: shapely.Polygon) -> list[np.ndarray]:
         return [corners[:-1]]
     triangles = shapely.constrained_delaunay_triangles(polygon).geoms
     return [shapely.get_coordinates(each)[:3] for each in triangles if 2 * each.area > 1e-4 * each.length / 2]
+
+
+def polygons_in(geometry: shapely.Geometry) -> list[shapely.Polygon]:
+    """The polygons of a geometry that have an area, without the lines and points that a repair may leave."""
+    if geometry.geom_type == "Polygon":
+        return [geometry] if geometry.area > 0 else []
+    parts: Iterable[shapely.Geometry] = shapely.get_parts(shapely.get_parts(geometry))
+    return [part for part in parts if part.geom_type == "Polygon" and part.area > 0]
 
 
 def extrude(outline: np.ndarray, bottom: float, top: float) -> np.ndarray:

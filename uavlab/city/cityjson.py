@@ -18,7 +18,16 @@ from uavlab.city.buildings import Building
 from uavlab.city.cityobjects import HOUSES, RELIEF, Thing, things_in, with_all_keys
 from uavlab.city.documents import progress, read_json
 from uavlab.city.model import City
-from uavlab.city.place import FARTHEST_LOCAL, Place, System, common_system, metres_per, system_for
+from uavlab.city.place import (
+    FARTHEST_LOCAL,
+    Place,
+    System,
+    check_extent,
+    common_system,
+    metres_per,
+    place_at_corner,
+    system_for,
+)
 from uavlab.city.rasters import read_terrain
 from uavlab.city.relief import feet_of, ground_below
 from uavlab.city.solids import THINNEST, Body, Surface, enclosed, filled, has_walls
@@ -35,8 +44,8 @@ FLAT = 1.0
 Solid = tuple[Thing, list[np.ndarray]]
 """A thing and its convex pieces [m]."""
 
-LEAST, MOST = 0.1, 100e3
-"""Extents of a city [m]."""
+LEAST = 0.1
+"""Extent of a city [m]: a model may have a lamp alone."""
 
 
 def read_cityjson(
@@ -194,12 +203,9 @@ def placed_in(
         plan = corners[:, :2] - corners[taken, :2].min(axis=0)
     else:
         lonlat = system.to_lonlat(corners[:, :2])
-        place = place_at(lonlat[taken.argmax()], low)
-        for _ in range(3):  # the axes turn a little when their origin moves
-            plan = place.east_north(lonlat)
-            place = place_at(place.longitude_latitude(plan[taken].min(axis=0)), low)
+        place = place_at_corner(lonlat[taken], low)
         plan = place.east_north(lonlat)
-    check_extent(plan[taken])
+    check_extent(plan[taken], "pass crs='EPSG:...', the system of the coordinates, or crs='local' for metres", LEAST)
     local = np.column_stack([plan, factor * corners[:, 2] - low])
     rings = iter(np.split(local, np.cumsum([len(ring) for thing in found for ring in rings_of(thing)])))
     return place, [
@@ -208,21 +214,6 @@ def placed_in(
         )
         for thing in found
     ]
-
-
-def place_at(lonlat: np.ndarray, height: float) -> Place:
-    longitude, latitude = lonlat.tolist()
-    return Place(longitude, latitude, height)
-
-
-def check_extent(plan: np.ndarray) -> None:
-    """Refuse what is no city, most of all degrees that were read as metres."""
-    x, y = np.ptp(plan, axis=0)
-    if not LEAST <= max(x, y) <= MOST:
-        raise ValueError(
-            f"the city covers {x:.3g} × {y:.3g} m, which is none: pass the reference system of the coordinates, "
-            "crs='EPSG:...', or crs='local' for metres"
-        )
 
 
 def rings_of(thing: Thing) -> Iterator[np.ndarray]:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
-import numpy as np
 from tqdm import tqdm
 
 Item = TypeVar("Item")
@@ -110,11 +109,3 @@ def progress(items: Sequence[Item], unit: str) -> Iterable[Item]:
 def count(kinds: Iterable[Any]) -> str:
     """Words for how often each kind occurs: "3 Point, 1 LineString"."""
     return ", ".join(f"{number} {kind}" for kind, number in Counter(kinds).most_common()) or "none at all"
-
-
-def lowest_corner(corners: np.ndarray, advice: str) -> np.ndarray:
-    """Lowest of corners (N, 3) [m] on each axis; `ValueError` with advice if they span under 1 m or over 100 km."""
-    x, y, _ = np.ptp(corners, axis=0)
-    if not 1.0 <= max(x, y) <= 100e3:
-        raise ValueError(f"the buildings cover {x:.3g} × {y:.3g} m, which is no city: {advice}")
-    return corners.min(axis=0)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
+from uavlab.city.buildings import polygons_in
 from uavlab.city.documents import progress
 from uavlab.city.place import common_system
 from uavlab.city.source import Notes
@@ -249,12 +250,6 @@ def repaired(ring: np.ndarray) -> shapely.Geometry:
     if different(ring) < 3:
         return shapely.Polygon()
     return shapely.make_valid(shapely.Polygon(ring), method="structure", keep_collapsed=False)
-
-
-def polygons_in(geometry: shapely.Geometry) -> list[shapely.Polygon]:
-    """The polygons of a geometry, without the lines and points that a repair may leave."""
-    parts = shapely.get_parts(shapely.get_parts(geometry))
-    return [part for part in parts if part.geom_type == "Polygon" and part.area > 0]
 
 
 def is_set(properties: Mapping[str, Any], key: str) -> bool:

@@ -15,7 +15,7 @@ from uavlab import checks
 from uavlab.city.blocks import (
     LEVEL,
     Block,
-    check_extent,
+    check_size,
     extents_of,
     ground_below,
     lowest_ground,
@@ -76,8 +76,10 @@ def read_geojson(
     """Read footprints with heights from a GeoJSON file (RFC 7946), for example an export of OpenStreetMap.
 
     Every polygon of a building becomes a prism. In a file with OpenStreetMap's keys, other polygons are no buildings
-    unless they have a height, and parts (`building:part`) override the outline that they lie in. Broken outlines are
-    mended. x = y = 0 is the south-west corner of the buildings, z = 0 the lowest ground at one.
+    unless they have a height or are tagged as something tall (a tower, a tank, a bridge), and parts (`building:part`)
+    override the outline that they lie in. Broken outlines are mended. Points and lines with a height or such a tag
+    (masts, trees, power lines) are left out, with a warning. x = y = 0 is the south-west corner of the buildings,
+    z = 0 the lowest ground at one.
 
     Parameters
     ----------
@@ -144,7 +146,7 @@ def read_geojson(
     blocks = blocks_of(footprints, wording, path)
     others = len(footprints) - len(blocks)
     place, blocks = placed(blocks, system)
-    check_extent(blocks, system)
+    check_size(blocks, system)
     blocks = with_volume(blocks, notes)
     from_sea = heights_above == "sea" or (heights_above == "auto" and mostly_raised(blocks, wording, notes))
     ground = ground_below(blocks, from_sea, terrain, place)

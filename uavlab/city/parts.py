@@ -9,7 +9,8 @@ import numpy as np
 import shapely
 
 from uavlab.city.blocks import Block, plans_of
-from uavlab.city.footprints import BUILDING, PART, polygons_in
+from uavlab.city.buildings import polygons_in
+from uavlab.city.footprints import BUILDING, PART
 from uavlab.city.source import Notes
 
 NARROWEST = 0.1

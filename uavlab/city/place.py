@@ -22,6 +22,9 @@ LOCAL = "local"
 FARTHEST_LOCAL = 20e3
 """Coordinates up to this size [m] are taken for metres from a corner, where a file names no system."""
 
+WIDEST = 100e3
+"""Extent of a city [m]."""
+
 OUTSIDE_DEG = 5.0
 """How far beyond the area of use of a system coordinates may lie [degrees]; more, and the system is wrong."""
 
@@ -66,6 +69,22 @@ class Place(NamedTuple):
             down = down + (height - self.height)
         turned = (longitude - self.longitude + 180.0) % 360.0 - 180.0
         return np.stack([self.longitude + turned, latitude], axis=-1)
+
+
+def place_at_corner(lonlat: np.ndarray, height: float = 0.0) -> Place:
+    """The south-west corner of the bounding box, east and north of itself, of longitudes and latitudes (N, 2)."""
+    corner = lonlat[0]
+    for _ in range(4):  # the axes turn a little when their origin moves
+        place = Place(float(corner[0]), float(corner[1]), height)
+        corner = place.longitude_latitude(place.east_north(lonlat).min(axis=0))
+    return place
+
+
+def check_extent(plan: np.ndarray, advice: str, least: float = 1.0) -> None:
+    """Refuse corners (N, 2) [m] that span what is no city, most of all degrees that were read as metres."""
+    x, y = np.ptp(plan, axis=0)
+    if not least <= max(x, y) <= WIDEST:
+        raise ValueError(f"the buildings cover {x:.3g} × {y:.3g} m, which is no city: {advice}")
 
 
 @lru_cache(64)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from uavlab.city.buildings import convex_parts
+from uavlab.city.buildings import convex_parts, polygons_in
 
 THINNEST = 1e-3
 """What is thinner or lower [m] is nothing, or a wall seen from above; files of city models keep three decimals."""
@@ -320,11 +320,3 @@ def quadrilaterals(
 def is_thick(polygons: Any) -> Any:
     """Whether polygons are wider than about a millimetre; a wall, seen from above, is not."""
     return 2 * shapely.area(polygons) > THINNEST * shapely.length(polygons)
-
-
-def polygons_in(geometry: shapely.Geometry) -> list[shapely.Polygon]:
-    """The polygons of a geometry, without the lines and points that a repair may leave."""
-    if geometry.geom_type == "Polygon":
-        return [] if geometry.is_empty else [geometry]
-    parts: Iterable[shapely.Geometry] = shapely.get_parts(shapely.get_parts(geometry))
-    return [part for part in parts if part.geom_type == "Polygon" and not part.is_empty]

@@ -106,13 +106,8 @@ class Terrain:
             If there are no heights or over 25 million, bounds are not in order or in degrees without a system, pyproj
             doesn't know the system, or a height is none.
         """
-        raster = filled_masks("heights", heights)
-        if raster.ndim != 2 or raster.size == 0:
-            raise ValueError(f"heights must have shape (rows, columns), got {raster.shape}")
+        raster, edges = checked_raster("heights", heights, bounds)
         check_pixels("heights", *raster.shape)
-        edges = checks.numbers("bounds", bounds)
-        if edges.shape != (4,) or not (np.isfinite(edges).all() and edges[0] < edges[2] and edges[1] < edges[3]):
-            raise ValueError(f"bounds must be (west, south, east, north) in increasing order, got {bounds!r}")
         west, south, east, north = edges
         pixel = max((east - west) / raster.shape[1], (north - south) / raster.shape[0])
         if crs is None and pixel < FINEST:
@@ -272,6 +267,17 @@ def check_pixels(name: str, rows: int, columns: int) -> None:
             f"{name} has {rows:,} × {columns:,} pixels, more than {MOST_PIXELS:,}: cut it to the city first, for "
             "example with gdal_translate -projwin, or take every other pixel"
         )
+
+
+def checked_raster(name: str, values: npt.ArrayLike, bounds: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    """A raster (rows, columns), NaN where it is masked, and its bounds (west, south, east, north)."""
+    raster = filled_masks(name, values)
+    if raster.ndim != 2 or raster.size == 0:
+        raise ValueError(f"{name} must have shape (rows, columns), got {raster.shape}")
+    edges = checks.numbers("bounds", bounds)
+    if edges.shape != (4,) or not (np.isfinite(edges).all() and edges[0] < edges[2] and edges[1] < edges[3]):
+        raise ValueError(f"bounds must be (west, south, east, north) in increasing order, got {bounds!r}")
+    return raster, edges
 
 
 def filled_masks(name: str, values: npt.ArrayLike) -> np.ndarray:

@@ -15,7 +15,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.columns import share_out
 from uavlab.city.place import System, system_of
-from uavlab.city.terrain import filled_masks
+from uavlab.city.terrain import COVERED, checked_raster
 from uavlab.risk.rates import CARS_PER_KM, LANE_WIDTH, SHELTER, vehicle_share
 
 HIGH_BUILDING = 10.0
@@ -30,9 +30,6 @@ SHORTEST_ROAD = 0.1
 
 PER = {None: 1.0, "m²": 1.0, "km²": 1e-6, "pixel": 1.0}
 """What values of a raster are per; a layer of people is per m²."""
-
-COVERED = 1 - 1e-6
-"""Share of a column from which on it counts as covered: the rest is rounding of coordinates."""
 
 
 def raster_layer(
@@ -73,12 +70,7 @@ def raster_layer(
     """
     checks.instance("city", city, City)
     factor = PER[per] if per is None else PER[checks.one_of("per", per, [name for name in PER if name])]
-    raster = filled_masks("values", values)
-    if raster.ndim != 2 or raster.size == 0:
-        raise ValueError(f"values must have shape (rows, columns), got {raster.shape}")
-    edges = checks.numbers("bounds", bounds)
-    if edges.shape != (4,) or not (np.isfinite(edges).all() and edges[0] < edges[2] and edges[1] < edges[3]):
-        raise ValueError(f"bounds must be (west, south, east, north) in increasing order, got {bounds!r}")
+    raster, edges = checked_raster("values", values, bounds)
     if fill is not None:
         checks.number("fill", fill)
         checks.finite("fill", fill)
