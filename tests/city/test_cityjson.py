@@ -336,7 +336,7 @@ def test_instance_is_its_template_turned_scaled_and_shifted(read, kind, matrix, 
 
 def test_instance_has_the_level_of_detail_of_its_template(read):
     templates = {"templates": [solid(BOX, "0"), solid(BOX, "2")], "vertices-templates": TEMPLATE["vertices-templates"]}
-    vertices = [*box((0, 0, 0), (20, 20, 10)), [40, 30, 0]]
+    vertices = [*box((0, 0, 0), (10, 6, 10)), [40, 30, 0]]
     objects = {"A": building(solid(BOX, "1"), instance(EYE, template=1), instance(EYE, template=0))}
     city = read(vertices, objects, **{"geometry-templates": templates})
     assert np.allclose(np.ptp(city.buildings[0].bounds, axis=0), (10, 4, 6))
@@ -476,7 +476,7 @@ def test_city_of_no_extent_is_refused(cityjson):
     with pytest.raises(ValueError, match=r"cover 0.0003 × 0.0002 m, which is no city: pass crs='EPSG:\.\.\.'"):
         read_cityjson(path, crs="local")
     path = cityjson(box((0, 0, 0), (2e5, 10, 6)), {"A": building(solid(BOX))})
-    with pytest.raises(ValueError, match=r"covers 2e\+05 × 10 m, which is none"):
+    with pytest.raises(ValueError, match=r"cover 2e\+05 × 10 m, which is no city"):
         read_cityjson(path, crs="local")
 
 
@@ -771,3 +771,17 @@ def test_a_sequence_of_models_has_one_system(tmp_path):
     assert len(read_cityjson(write(tmp_path / "a.jsonl", model("a", 25833), model("b", 25833))).buildings) == 2
     with pytest.raises(ValueError, match=r"a\.jsonl has coordinates in more than one reference system"):
         read_cityjson(write(tmp_path / "a.jsonl", model("a", 25833), model("b", 25832)))
+
+
+def test_a_detail_in_a_high_level_does_not_replace_the_house(read):
+    dormer = [[1, 1, 9], [2, 1, 9], [2, 2, 11]]
+    whole = building(solid(BOX), {"type": "MultiSurface", "lod": "3", "boundaries": [[[8, 9, 10]]]})
+    city = read([*box((0, 0, 0), (10, 10, 9)), *dormer], {"h": whole})
+    assert city.buildings[0].bounds.tolist() == [[0, 0, 0], [10, 10, 11]]
+    assert not city.is_free((5, 5, 8.5))
+
+
+def test_a_roof_that_is_smaller_in_a_higher_level_is_taken_alone(read):
+    boxes = [*box((0, 0, 0), (10, 10, 9)), *box((1, 1, 0), (9, 9, 7))]
+    city = read(boxes, {"h": building(solid(BOX), solid(shifted(BOX, 8), "2.2"))})
+    assert city.buildings[0].bounds.tolist() == [[0, 0, 0], [8, 8, 7]]

@@ -65,7 +65,7 @@ def read_cityjson(
     point, and to the ground where that is lower: passages below it are closed. Every other object with a solid or
     surfaces (installations on roofs, bridges, furniture, trees, …) is one of its own, "BuildingInstallation mast-1",
     and keeps its lower surface; a surface that encloses nothing becomes a slab of 0.1 m. Each takes its highest level
-    of detail above 0.
+    of detail above 0; where that shows less than half of a lower one in plan, both.
 
     x points east, y to true north; x = y = 0 is the south-west corner of the bounding box of all these objects, z = 0
     the lowest foot of a building. `City.reference` is where that is on Earth, its height as in the file [m].

@@ -22,6 +22,9 @@ HOUSES = {"Building", "BuildingPart"}
 INTERIOR = {"BuildingFurniture", "BuildingRoom", "BuildingStorey", "BuildingUnit", "BridgeFurniture", "BridgeRoom"}
 NO_OBSTACLE = {"CityObjectGroup", "LandUse", "Railway", "Road", "TransportSquare", "WaterBody", "Waterway"}
 
+PARTIAL = 0.5
+"""A level of detail whose plan is a smaller share of a lower one's doesn't show the whole object."""
+
 AGAIN = " (again)"
 """Stands behind the key of an object that another one has already."""
 
@@ -205,8 +208,18 @@ def bodies_of(
         else:
             other.append("level of detail 0 only" if lod < 1 else "no surface with an area")
     if levels:
-        return levels[max(levels)], ""
+        lod, *lower = sorted(levels, reverse=True)
+        bodies = levels[lod]
+        for lod in lower:  # a detail alone, such as a dormer, is no substitute for the house
+            bodies = bodies + levels[lod] if PARTIAL * spread(levels[lod]) > spread(bodies) else bodies
+        return bodies, ""
     return [], other[0] if other else "" if item.get("children") else "no geometry"
+
+
+def spread(bodies: Sequence[Body]) -> float:
+    """Area of the bounding box of bodies in plan [units²]."""
+    plan = np.concatenate([ring[:, :2] for body in bodies for surface in body.surfaces for ring in surface])
+    return float(np.prod(np.ptp(plan, axis=0)))
 
 
 def instance_of(

@@ -22,7 +22,7 @@ DOUBTS = ("assumed", "left out")
 FIRST = 3
 """Of so many things the names are kept."""
 
-LONGEST_NAME = 32
+LONGEST_NAME = 30
 """Letters of a name that are printed; a longer one, such as a UUID, is cut. `Entry.first` has it whole."""
 
 
