@@ -432,6 +432,8 @@ def test_a_density_below_0_is_no_data_that_nobody_declared(per):
     with pytest.raises(ValueError, match=f"values per {per} must be at least 0, 1 on the map are not, the lowest -200"):
         raster_layer(CITY, values, BOUNDS, per=per)
     assert raster_layer(CITY, values, BOUNDS).min() == -200  # heights, say
+    with pytest.raises(ValueError, match="fill must be finite and at least 0, got -5"):
+        raster_layer(CITY, np.abs(values), BOUNDS, per=per, fill=-5.0)
     far = np.ones((3, 40))
     far[:, -1] = -99999.0
     assert raster_layer(CITY, far, (100, -20, 1000, 10), per=per).min() > 0

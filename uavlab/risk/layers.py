@@ -73,7 +73,7 @@ def raster_layer(
     raster, edges = checked_raster("values", values, bounds)
     if fill is not None:
         checks.number("fill", fill)
-        checks.finite("fill", fill)
+        (checks.finite if per is None else checks.not_negative)("fill", fill)
     system = None if crs is None else system_of(crs)
     raster, edges = part_around(city, raster, edges, system)
     if per is not None and (raster < 0).any():
