@@ -39,6 +39,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 from shapely.affinity import rotate, translate
 from shapely.geometry import mapping
 
+# %%
 from uavlab import plot, scene
 from uavlab.city import (
     Building,
@@ -477,7 +478,6 @@ plot.finished(figure)
 # on 200 random grids for each cell and rule:
 
 # %%
-# NBVAL_CHECK_OUTPUT
 WIDTH, THICKNESS = 1.5, 0.8  # of the alley and of the wall [m]
 
 
@@ -496,6 +496,9 @@ for cell in (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0):
             closed += solid[(x > 5) & (x < 16)].all()
             gone += not solid[x > 26].any()
         shares[cell] = closed / 200, gone / 200
+
+# %%
+# NBVAL_CHECK_OUTPUT
 for cell in (0.5, 1.0, 2.0, 4.0):
     shown = (f"{rule}: alley closed {shares[cell][0]:>4.0%}, wall lost {shares[cell][1]:>4.0%}"
              for rule, shares in measured.items())  # fmt: skip
@@ -766,7 +769,6 @@ assert np.abs(back - straight.points).max() < 1e-3
 
 
 # %%
-# NBVAL_CHECK_OUTPUT
 def feature(name, corners, **properties):
     """A GeoJSON feature with corners in metres from the centre; `building` unless it says otherwise."""
     ring = Place(*CENTRE).longitude_latitude([*corners, corners[0]]).tolist()
@@ -778,6 +780,8 @@ def square(west, south, size=20):
     return [(west, south), (west + size, south), (west + size, south + size), (west, south + size)]
 
 
+# %%
+# NBVAL_CHECK_OUTPUT
 features = [
     feature("feet", square(0, 0), height="40 ft"),
     feature("comma", square(40, 0), height="12,5 m"),
@@ -867,7 +871,6 @@ plot.section(closed, 9.0, None, *(replace(way, planner=name) for name, way in wa
 # fills what lies below the faces and takes the ground from the foot of the house.
 
 # %%
-# NBVAL_CHECK_OUTPUT
 corners = [(x, y, z) for z in (0, 6000) for x, y in ((0, 0), (12000, 0), (12000, 8000), (0, 8000))]
 corners += [(0, 4000, 9000), (12000, 4000, 9000)]  # the ridge
 faces = [(3, 2, 1, 0), (0, 1, 5, 4), (2, 3, 7, 6), (1, 2, 6, 9, 5), (3, 0, 4, 8, 7), (4, 5, 9, 8), (6, 7, 8, 9)]
@@ -880,6 +883,9 @@ model = {
     "CityObjects": {"house": {"type": "Building", "geometry": [solid]}},
     "vertices": corners,
 }
+
+# %%
+# NBVAL_CHECK_OUTPUT
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "house.city.json"
     path.write_text(json.dumps(model))
