@@ -176,13 +176,11 @@ def draw_below(axes: Axes, city: City, drawn: Sequence[tuple[Route, str]], zero:
     lowest = min(0.0, *(float(ground.min()) for ground in grounds))
     alone = len(ways) == 1
     for (way, color), ground in zip(ways, grounds, strict=True):
-        fill = {"color": CUT_COLOR, "alpha": 0.75} if alone else {"color": color, "alpha": 0.25}
-        axes.fill_between(way.distance, lowest, ground, linewidth=0, **fill)
+        shade, alpha = (CUT_COLOR, 0.75) if alone else (color, 0.25)
+        axes.fill_between(way.distance, lowest, ground, linewidth=0, color=shade, alpha=alpha)
         axes.plot(way.distance, tops_below(city, way.points) - zero, color=color, linewidth=0.8, linestyle=":")
-    name, fill = (
-        ("ground", {"color": CUT_COLOR, "alpha": 0.75}) if alone else ("ground below each route", {"color": "0.8"})
-    )
-    axes.fill_between([], [], [], linewidth=0, label=name, **fill)
+    shade, name = (CUT_COLOR, "ground") if alone else ("0.8", "ground below each route")
+    axes.fill_between([], [], [], linewidth=0, color=shade, alpha=0.75, label=name)
     axes.plot([], [], color="0.3", linewidth=0.8, linestyle=":", label="occupied voxels below it")
     return lowest
 
