@@ -16,7 +16,7 @@ from uavlab.city.buildings import Building
 from uavlab.city.cityobjects import HOUSES, RELIEF, Thing, things_in, with_all_keys
 from uavlab.city.documents import progress, read_json
 from uavlab.city.model import City
-from uavlab.city.place import FARTHEST_LOCAL, Place, System, metres_per, system_for
+from uavlab.city.place import FARTHEST_LOCAL, NOWHERE, Place, System, metres_per, system_for
 from uavlab.city.rasters import read_terrain
 from uavlab.city.relief import feet_of, ground_below
 from uavlab.city.solids import THINNEST, Body, Surface, enclosed, filled, has_walls
@@ -147,7 +147,7 @@ def system_of_file(
     if system is not None:
         notes.add("assumed" if nameless else "derived", f"place from {system.accuracy}", count=0)
     elif nameless:
-        notes.add("assumed", "coordinates are metres east and north of an unknown place", count=0)
+        notes.add("assumed", NOWHERE, count=0)
     return system
 
 
