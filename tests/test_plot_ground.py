@@ -127,7 +127,8 @@ def test_plan_of_level_ground_has_no_contours():
 
 
 def test_profile_draws_the_ground_below_and_what_is_on_it(hill, over):
-    above = plot.profile(hill, over, safe_distance=np.float32(3)).axes[0]
+    figure = plot.profile(hill, over, safe_distance=np.float32(3))
+    above = figure.axes[0]
     way = over.resample(2.0)
     area = above.collections[0].get_paths()[0].vertices
     beneath = -hill.height_above_ground(way.points * [1, 1, 0])
@@ -138,10 +139,10 @@ def test_profile_draws_the_ground_below_and_what_is_on_it(hill, over):
     assert (tops >= beneath - 1e-9).all()
     assert (tops <= way.points[:, 2] + 1e-9).all()
     assert tops[np.argmin(np.abs(way.points[:, 0] - 25))] == 16.0  # the roof's voxels
-    names = [text.get_text() for text in above.get_legend().get_texts()]
-    assert names[1:] == ["ground", "occupied voxels below"]
-    two = plot.profile(hill, over, Route(over.points[::-1], "back")).axes[0]
-    assert "ground below A*" in [text.get_text() for text in two.get_legend().get_texts()]
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names[1:] == ["ground", "occupied voxels below it"]
+    two = plot.profile(hill, over, Route(over.points[::-1], "back"))
+    assert "ground below each route" in [text.get_text() for text in two.legends[0].get_texts()]
 
 
 def test_searches_tracks_and_corners_tell_buildings_from_ground(hill, over):

@@ -453,7 +453,7 @@ def test_degrees_are_placed(read):
 
 def test_small_coordinates_without_a_system_are_metres_and_that_is_said(cityjson):
     path = cityjson(box((0, 0, 0), (20, 20, 6)), {"A": building(solid(BOX))})
-    with pytest.warns(UserWarning, match="assumed: coordinates are metres east and north of an unknown place"):
+    with pytest.warns(UserWarning, match="assumed: coordinates in metres, of an unknown place"):
         city = read_cityjson(path)
     assert np.allclose(city.buildings[0].bounds, [(0, 0, 0), (20, 20, 6)])
     with warnings.catch_warnings():

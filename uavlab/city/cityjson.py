@@ -20,6 +20,7 @@ from uavlab.city.documents import progress, read_json
 from uavlab.city.model import City
 from uavlab.city.place import (
     FARTHEST_LOCAL,
+    NOWHERE,
     Place,
     System,
     check_extent,
@@ -166,7 +167,7 @@ def system_of_file(
     if system is not None:
         notes.add("assumed" if nameless else "derived", f"place from {system.accuracy}", count=0)
     elif nameless:
-        notes.add("assumed", "coordinates are metres east and north of an unknown place", count=0)
+        notes.add("assumed", NOWHERE, count=0)
     return system
 
 

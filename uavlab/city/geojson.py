@@ -40,7 +40,7 @@ from uavlab.city.footprints import (
 from uavlab.city.heights import Wording, above_ground, above_sea, heights_of
 from uavlab.city.model import City
 from uavlab.city.parts import overridden_by_parts
-from uavlab.city.place import System, metres_per, system_for
+from uavlab.city.place import NOWHERE, System, metres_per, system_for
 from uavlab.city.source import FIRST, Notes
 from uavlab.city.terrain import Terrain
 from uavlab.city.zones import NoFlyZone
@@ -221,7 +221,7 @@ def note_system(notes: Notes, system: System | None, given: Any, declared: Any, 
     """Say in which system coordinates and heights are."""
     if system is None:
         kind = "derived" if given is not None else "assumed"
-        notes.add(kind, "coordinates in metres, of an unknown place (crs='EPSG:...' names their system)", count=0)
+        notes.add(kind, NOWHERE, count=0)
     else:
         named = " (no crs: longitude and latitude, as in RFC 7946)" if given is None and declared is None else ""
         notes.add("derived", f"place: {system.accuracy}{named}", count=0)

@@ -19,6 +19,9 @@ from uavlab import checks
 LOCAL = "local"
 """What `crs=` says of plain metres from somewhere."""
 
+NOWHERE = "coordinates in metres, of an unknown place (crs='EPSG:...' names their system)"
+"""What reports say of those."""
+
 FARTHEST_LOCAL = 20e3
 """Coordinates up to this size [m] are taken for metres from a corner, where a file names no system."""
 

@@ -74,8 +74,8 @@ def fly(
     route : Route or Curve
     city : City
     uav : UAV
-        Its body is a ball of its diameter; it collides when that touches an obstacle. The ground is none, as for the
-        planners: flights begin and end there.
+        Its body is a ball of its diameter; it collides when that touches an obstacle. `City.ground` is one; the open
+        floor of a city without it is none.
     disturbance : Wind, OffsetProcess, or callable
         Or a function of the time [s] that returns one of these, always the same kind.
     autopilot : Autopilot

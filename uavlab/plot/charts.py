@@ -136,8 +136,8 @@ def finite_or_nan(values: np.ndarray) -> np.ndarray:
 def profile(city: City, *routes: Route, safe_distance: float | None = None) -> Figure:
     """Height and clearance along routes, with the distance to keep as a dashed line if it is given [m].
 
-    On level ground heights are counted from it. Else they are z of the map, the ground below the first route is a
-    brown area, and thin lines show the tops of the occupied voxels below each route.
+    On level ground heights are counted from it. Else they are z of the map, and the ground below each route is an
+    area: brown, or of several routes in their colours. Dotted lines are the tops of the occupied voxels below.
     """
     check_drawn(city, routes)
     if safe_distance is not None:
@@ -161,7 +161,7 @@ def profile(city: City, *routes: Route, safe_distance: float | None = None) -> F
     below.set_ylabel("clearance [m]")
     below.set_xlabel("distance flown [m]")
     if above.lines:
-        above.legend(fontsize=8)
+        figure.legend(loc="outside upper center", ncols=2, fontsize=8)
     for axes in (above, below):
         axes.grid(alpha=0.3)
         axes.margins(x=0.01)
@@ -170,15 +170,18 @@ def profile(city: City, *routes: Route, safe_distance: float | None = None) -> F
 
 
 def draw_below(axes: Axes, city: City, drawn: Sequence[tuple[Route, str]], zero: float) -> float:
-    """Ground below the first route and obstacles below all of them, above height `zero`; returns the lowest height."""
+    """Ground and obstacles below each route, above height `zero`; returns the lowest height."""
     ways = [(route.resample(city.cell / 2), color) for route, color in drawn]
     grounds = [ground_below(city, way.points) - zero for way, _ in ways]
     lowest = min(0.0, *(float(ground.min()) for ground in grounds))
-    name = "ground" if len(ways) == 1 else f"ground below {plain(drawn[0][0].planner)}"
-    axes.fill_between(ways[0][0].distance, lowest, grounds[0], color=CUT_COLOR, linewidth=0, alpha=0.75, label=name)
-    for way, color in ways:
+    alone = len(ways) == 1
+    for (way, color), ground in zip(ways, grounds, strict=True):
+        shade, alpha = (CUT_COLOR, 0.75) if alone else (color, 0.25)
+        axes.fill_between(way.distance, lowest, ground, linewidth=0, color=shade, alpha=alpha)
         axes.plot(way.distance, tops_below(city, way.points) - zero, color=color, linewidth=0.8, linestyle=":")
-    axes.plot([], [], color="0.3", linewidth=0.8, linestyle=":", label="occupied voxels below")
+    shade, name = (CUT_COLOR, "ground") if alone else ("0.8", "ground below each route")
+    axes.fill_between([], [], [], linewidth=0, color=shade, alpha=0.75, label=name)
+    axes.plot([], [], color="0.3", linewidth=0.8, linestyle=":", label="occupied voxels below it")
     return lowest
 
 
