@@ -9,15 +9,15 @@
 # %% [markdown]
 # # From buildings to voxels: what a planner sees
 #
-# A city is walls, roofs and courtyards. A planner wants something simpler: a finite set of places, and for each of
-# them two answers: *may I be here?* and *how far is the nearest wall?* This notebook makes the one into the other.
-# It builds the city of REPARE Table 1 from its corners, cuts it into cubes, measures the distance to the walls
-# exactly, and then asks what the size of a cube costs: in memory, in time, and in alleys that close and walls that
-# vanish. Then the ground gets a hill, and a file gets the mistakes that files have. At the end you read a real city
-# from a file of your own.
+# A city is walls, roofs and courtyards. A planner wants something simpler: a finite set of places, and for each of them
+# two answers: *may I be here?* and *how far is the nearest wall?* This notebook makes the one into the other. It builds
+# the city in which the paper REPARE tests its planner for drones (UAVs), from the corners in its Table 1, cuts it into
+# cubes, measures the distance to the walls exactly, and then asks what the size of a cube costs: in memory, in time,
+# and in alleys that close and walls that vanish. Then the ground gets a hill, and a file gets the mistakes that files
+# have. At the end you read a real city from a file of your own.
 #
 # *Run All* (in the menu **Run**) brings the 3D scenes and the slider to life; until then a still picture stands in
-# their place.
+# their place. The comment `NBVAL_CHECK_OUTPUT` is for our tests.
 
 # %%
 import json
@@ -68,7 +68,7 @@ from uavlab.planners import astar, penalty_zone, shortcut
 # | 4 | floating | a slab, oblique to the axes, from 45 to 60 m above the ground; air below it |
 # | 5 | spire | a thin tower with six sides, walls to 95 m, one apex at 99 m |
 #
-# Drag the scene to turn it, scroll to zoom.
+# In the scene 1 is orange, 2 light blue, 3 green, 4 dark blue, 5 yellow. Drag to turn it, scroll to zoom.
 
 # %%
 city = table1_city()
@@ -111,7 +111,8 @@ assert hip_roof.contains(list(points.values())).tolist() == [True, False]
 #
 # $$V(A\cup B) = V(A) + V(B) - V(A\cap B). \tag{2}$$
 #
-# The overlap is convex again: it lies behind the faces of both.
+# The overlap is convex again: it lies behind the faces of both. SciPy finds its corners from the faces and one point
+# inside.
 
 
 # %%
@@ -145,11 +146,11 @@ assert volume_of(filled) / notch_volume == pytest.approx(1.48, abs=0.005)
 # with $\mathbf x_0$ the lowest corner of the map. The centres are the *nodes* that a planner visits. One rule decides
 # what a planner sees, and there are two to choose from:
 #
-# - `voxels="touched"`: **a voxel is occupied when a building reaches into it.** This is the library's rule. What is
-#   free is free: no part of any building lies in a free voxel.
-# - `voxels="centres"`: a voxel is occupied when its *centre* lies in a building. This is how we read the papers. On
-#   average it has the right volume, but it loses what is thin. Table 1's city keeps it, so that our numbers can be
-#   compared with REPARE's.
+# - `voxels="touched"`: **a voxel is occupied when a building reaches into it.** This is the library's default. A
+#   free voxel then holds no part of any building.
+# - `voxels="centres"`: a voxel is occupied when its *centre* lies in a building. The papers don't say which rule
+#   is theirs; we take it to be this one. Its volume is right on average, but it loses what is thin. `table1_city()`
+#   uses it, so that our numbers can be compared with REPARE's.
 #
 # REPARE's map has $c = 1$ m. Its five buildings by both rules:
 
@@ -177,7 +178,8 @@ assert sum(counts["touched"]) / exact_volume - 1 == pytest.approx(0.018, abs=5e-
 # %% [markdown]
 # A voxel has one cubic metre, so the counts are volumes. By centres they are 144 858 m³ against 144 372 m³ in truth,
 # 0.3 % too much. The spire is the worst, 5.7 % too large: its section has 35 m², and 37 centres lie in it. By touch
-# they are 1.8 % too much. That is little, because most walls of Table 1 lie on whole metres, just between two voxels.
+# they are 1.8 % too much. That is little, because most walls of Table 1 lie on whole metres, just between two voxels;
+# below we shift the grid.
 #
 # This is what the planner sees, at a coarser 4 m so that you can tell the voxels apart. Gone are the roofs; there
 # are steps.
@@ -189,16 +191,16 @@ scene.show(City(coarse.occupied, coarse.cell, name="What the planner sees, voxel
 # %% [markdown]
 # ### One number per node
 #
-# Planners keep a cost, a parent, a pheromone for each node, in plain arrays. So each node needs one number, its
+# Planners keep some values for each node, such as its cost, in plain arrays. So each node needs one number, its
 # *code*:
 #
 # $$n = k + n_z\,(j + n_y\, i), \qquad 0 \le n < n_x n_y n_z, \tag{4}$$
 #
 # with $n_x, n_y, n_z$ the numbers of voxels along each axis. Reading the formula from the inside: $i$ slabs of $n_y
-# n_z$ voxels, then $j$ rows of $n_z$, then $k$. It is the position of the voxel in `city.occupied.ravel()`. One
-# step east adds $n_y n_z$ to the code, one step north adds $n_z$, one step up adds 1. RISK-ACO (section 1) and
-# PSO-BAS (section 2) number their nodes too, without a formula. Which order is taken doesn't matter as long as it
-# can be undone.
+# n_z$ voxels, then $j$ rows of $n_z$, then $k$. It is the position of the voxel in `city.occupied.ravel()`, where
+# `city.occupied` is a Boolean array. One step east adds $n_y n_z$ to the code, one step north adds $n_z$, one step up
+# adds 1. The course's other two papers, RISK-ACO (section 1) and PSO-BAS (section 2), number their nodes too, without a
+# formula. Which order is taken doesn't matter as long as it can be undone.
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -242,8 +244,8 @@ assert City(lonely).clearance[3, 0, 0] == 2.5
 assert City(lonely).clearance[2, 2, 1] == pytest.approx(np.sqrt(1.5**2 + 1.5**2 + 0.5**2))
 
 # %% [markdown]
-# Straight ahead half a cell is lost; towards an edge or a corner it is up to half the diagonal of a voxel, 0.87 m.
-# In the whole city:
+# Straight ahead half a cell is lost; towards an edge or a corner it is up to half the diagonal of a voxel, 0.87 m. In
+# the whole city, with 3.5 m, the smallest safe distance of REPARE's Table 4, as an example:
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -261,9 +263,9 @@ assert too_far.max() == pytest.approx(np.sqrt(3) / 2)
 assert wrongly.sum() == 6_916
 
 # %% [markdown]
-# `city.clearance` is exact and computed once for all voxels, one axis after the other (Felzenszwalb and
-# Huttenlocher 2012), so its cost grows only with the number of voxels. It counts all that is occupied. Table 1's floor
-# is not, and the border of the map is no obstacle.
+# `city.clearance` is exact and computed once for all voxels, one axis after the other (Felzenszwalb and Huttenlocher
+# 2012), so its cost grows only with the number of voxels. It counts occupied voxels only, so Table 1's open floor and
+# the border of the map are no obstacles.
 #
 # A section at 50 m cuts all five buildings, the floating one too. Between the buildings the clearance has ridges,
 # where two walls are equally far: these are the streets that a careful UAV flies along.
@@ -273,7 +275,7 @@ plot.section(city, 50.0, np.minimum(city.clearance, 15.0), label="clearance [m],
 
 # %% [markdown]
 # Move the section up and down. Up to which height can you pass below the floating building, and from which height
-# on does the spire stand alone?
+# on does the spire stand alone? (Up to 45 m, and from 90 m on.)
 
 
 # %%
@@ -285,9 +287,9 @@ def section_at(height):
 # %% [markdown]
 # ## The ring and the ball
 #
-# REPARE has no clearance. Its UAV looks at the 26 nodes of an *outer ring* (Fig. 5): one cell away would be its
-# neighbours, the outer ring is $r$ cells away, along the axes and all their diagonals. If one of them is occupied,
-# the node counts as risky and costs more (Eq. 12). What distance is that?
+# REPARE has no clearance. Its UAV looks at 26 nodes, the *outer ring* (its Fig. 5): those at $(i + r\,a,\; j + r\,b,\;
+# k + r\,e)$, where each of $a, b, e$ is −1, 0 or 1, and not all are 0. With $r = 1$ they would be its neighbours. If
+# one of them is occupied, the node counts as risky and costs more (REPARE's Eq. 12). What distance is that?
 #
 # Stand in front of a flat wall. The ring meets it as long as the nearest wall voxel is at most $r$ cells away. The
 # first node that escapes has it $r+1$ cells away, centre to centre, so
@@ -295,7 +297,7 @@ def section_at(height):
 # $$D_{ring} = \bigl(r + \tfrac12\bigr)\, c \quad\text{from its centre to the surface.} \tag{6}$$
 #
 # Radii 3, 4 and 5 on a map of 1 m give 3.5, 4.5 and 5.5 m: exactly the three safe distances of REPARE Table 4, and
-# with a body of 1 m exactly Eq. 7: $D_{min} = \xi + D_{uav}/2$ with offsets $\xi$ of 3, 4 and 5 m.
+# with a body of 1 m exactly REPARE's Eq. 7: $D_{min} = \xi + D_{uav}/2$ with offsets $\xi$ of 3, 4 and 5 m.
 
 
 # %%
@@ -313,9 +315,9 @@ for radius, table4 in ((3, 3.5), (4, 4.5), (5, 5.5)):
     assert kept == table4
 
 # %% [markdown]
-# So far the ring is as good as a *ball*, that is as asking $D < D_{min}$. But the wall was thick. The ring looks
-# $r$ cells away and nowhere else: it looks *through* a wall that is thinner than $r$ cells, once the UAV is near
-# enough.
+# The exact test is a *ball*: a node is risky when $D < D_{min}$. (`penalty_zone` gives the factor on the cost of each
+# node, by either test; above 1 it is risky.) Before this wall, 10 m thick, ring and ball agree. But the ring looks $r$
+# cells away and nowhere else: it looks *through* a wall that is thinner than $r$ cells, once the UAV is near enough.
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -348,10 +350,10 @@ assert [round(100 * added[r], 1) for r in (3, 4, 5, 6)] == [4.7, 4.0, 6.8, 7.3]
 assert [round(kept[r], 2) for r in (3, 4, 5, 6)] == [2.55, 3.54, 3.81, 0.5]
 
 # %% [markdown]
-# At Table 4's radii the ring misses about one voxel in a hundred, so as a *price* it does nearly what it should. As
-# a *guarantee* it doesn't hold: beside the oblique wall of the floating building it accepts 2.55 m where 3.5 m is
-# meant, and 3.81 m where 5.5 m is meant. From radius 6 on it fails altogether: the spire is 5 m wide, the ring
-# looks through it, and a node beside its wall counts as free of risk.
+# At Table 4's radii the ring misses about 1 % of the ball and adds 4 to 7 %. As a *price* that is nearly right. As a
+# *guarantee* it doesn't hold: off the corners of the spire and of the floating building it accepts 2.55 m where 3.5 m
+# is meant, and 3.81 m where 5.5 m is meant. From radius 6 on it fails altogether: the spire is 5 m wide, the ring looks
+# through it, and a node beside its wall counts as free of risk.
 
 # %%
 zones = ListedColormap(["white", "#56B4E9", "#E69F00", "#D55E00", "black"])  # Okabe and Ito
@@ -376,7 +378,7 @@ plot.finished(figure)
 
 # %%
 # NBVAL_CHECK_OUTPUT
-for r in (2, 3, 4, 6):
+for r in (2, 3, 4, 5, 6):
     ball, ring = (between_centres <= r) & free, ring_zones[r]
     misses, adds = (ball & ~ring).sum() / ball.sum(), (ring & ~ball).sum() / ball.sum()
     print(f"radius {r}: of the ball between centres the ring misses {misses:.1%}, adds {adds:.1%}")
@@ -390,9 +392,9 @@ for r in (2, 3, 4, 6):
 #
 # $$N = (L/c)^3 \tag{7}$$
 #
-# voxels: half the cell, eight times the memory and eight times the work. REPARE says in its conclusion that a finer
-# map would increase its work significantly; this is by how much. The times are of the machine that ran this page
-# last.
+# voxels: half the cell, eight times the voxels and the memory. REPARE says in its conclusion that a finer map would
+# increase its work significantly. Here the clearance takes most of the time, and on large maps that grows about as $N$
+# does. The times are of the machine that ran this page last.
 
 # %%
 cells = (4.0, 2.0, 1.0, 0.5)
@@ -525,12 +527,12 @@ plot.finished(figure)
 
 # %% [markdown]
 # At 2 m the centres lose the wall on six grids in ten, and close the alley on three in ten (Eq. 8: a quarter). Touch
-# loses nothing, and closes the alley always. Even at 1 m it closes the alley on half of the grids, where a centre
-# always falls into it. So the two rules err on different sides: by touch the planner misses ways that there are, by
-# centres it takes ways that there aren't.
+# loses nothing, and closes the alley always. Even at 1 m, touch closes the alley on half of the grids. Centres never
+# do: the alley is wider than a voxel, so that a centre always falls into it. So the two rules err on different sides:
+# by touch the planner misses ways that there are, by centres it takes ways that there aren't.
 #
-# Here is what it does to a route. Two tall blocks leave an alley of 1.5 m (at $x = 19.2$ to $20.7$ m); north of it
-# stands a free wall 0.8 m thick. A\* looks for a way from south to north.
+# Here is what it does to a route. Two blocks as high as the map, 8 m, leave an alley of 1.5 m (at $x = 19.2$ to $20.7$
+# m); north of it stands a free wall 0.8 m thick. A\* looks for a way from south to north.
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -567,14 +569,14 @@ plot.finished(figure)
 # %% [markdown]
 # By centres the wall is gone at 2 m and at 1 m. At 2 m the closed alley hides that: there is no way at all. At 1 m
 # there is one, the planner is content, and its route goes through the wall. By touch the answer at 2 m and at 1 m is
-# "no way". That is too careful, since a way exists, but nobody hits a wall. At 0.5 m both rules find it. So when a
+# "no way". That is too careful, since a way exists. But no route hits a wall. At 0.5 m both rules find it. So when a
 # planner finds no way through a narrow street, try a smaller cell before you believe it.
 #
 # Nor is the thin wall the only danger. A route of straight legs in any direction, as `shortcut` makes it ([06
-# A\*](06_astar.ipynb)), passes voxels anywhere, not only through their centres. By centres a free voxel may be full of
-# wall up to its middle, so even a thick building loses up to half a cell at its corners and roofs. By touch a free
-# voxel holds no part of any building. A leg that stays in free voxels therefore meets no wall. We check 50 routes
-# between Table 1's buildings, ten on each of five random grids, every 0.1 m:
+# A\*](06_astar.ipynb)), passes voxels anywhere, not only through their centres. By centres a wall may reach into a free
+# voxel, almost to its middle. A leg through that voxel can cut the corner or the roof of even a thick building. By
+# touch a free voxel holds no part of any building. A leg that stays in free voxels therefore meets no wall. We check 50
+# routes between Table 1's buildings, ten on each of five random grids, every 0.1 m:
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -623,7 +625,8 @@ print(f"a point at z = 35 m over the top is {valley.height_above_ground((60, 30,
 # ground reaches into are occupied, and all below them. So clearance and planners treat it like a wall.
 # `city.height_above_ground(points)` says how high a point is above the ground below it.
 #
-# *Predict first:* we plan from house to house, 8 m high, on both maps. What does the first route do?
+# *Predict first:* we plan from house to house, 8 m high, on both maps (from the centre of a voxel to that of another,
+# so at 9 m). What does the first route do?
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -651,11 +654,15 @@ drawn = [replace(route, planner=name) for name, route in named.items()]
 plot.profile(valley, *drawn)
 
 # %% [markdown]
+# Each route has its own hill here, since the axis is the distance flown: who flies a longer way meets the top later. A
+# vertical climb is a slope of 45°.
+#
 # The first route is straight, and in truth it is a tunnel, up to 20.6 m below the ground. With the hill in the map the
-# UAV flies over it, but the planner takes any free voxel, and so it skims the ground: 1.4 m are left. Neighbours want
-# more, and laws have a ceiling, such as 120 m above ground in the European Union. All planners take `min_height` and
-# `max_height`. They count from the ground below the UAV, not from the start: the allowed band climbs over the hill.
-# Start and goal may lie below `min_height`; then the UAV takes off and lands vertically.
+# UAV flies over it, but the planner takes any free voxel, and so it skims the ground: 1.4 m are left. The clearance in
+# the lower panel is less: it counts the steps of the occupied voxels (dotted), which stand above the smooth ground.
+# Neighbours want more, and laws have a ceiling, such as 120 m above ground in the European Union. All planners take
+# `min_height` and `max_height`. They count from the ground below the UAV, not from the start: the allowed band climbs
+# over the hill. Start and goal may lie below `min_height`; then the UAV takes off and lands vertically.
 #
 # The same in 3D:
 
@@ -725,10 +732,11 @@ plot.section(town, 11.0, label="clearance [m]; yellow: the ground, 11 m below, i
 # %% [markdown]
 # The ground is solid in every city that was read from a file. This file says nothing about it, so the reader takes it
 # as level at $z = 0$. The map begins one layer of voxels deeper, and that layer is occupied everywhere. So clearance
-# counts the ground, too: 11 m above it no place has more than 11 m.
+# counts the ground, too: 11 m above it no place has more than 11 m. The voxels hold 6.7 % more than the blocks, since
+# files are read by touch.
 #
-# The courtyards are there. A flight from one to another has to climb over the roofs. A\* with 3.5 m of clearance,
-# then the straight lines of `shortcut` ([06 A*](06_astar.ipynb) explains both):
+# The courtyards are there. A flight at 11 m from one to another has to climb over the roofs. A\* with 3.5 m of
+# clearance, then the straight lines of `shortcut` ([06 A*](06_astar.ipynb) explains both):
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -760,7 +768,8 @@ print(f"there and back: off by less than 1 mm: {np.abs(back - straight.points).m
 assert np.abs(back - straight.points).max() < 1e-3
 
 # %% [markdown]
-# Six digits of a degree are about a decimetre. The height is the file's own: here metres above ground level.
+# Six digits of a degree are about a decimetre. The third number is the height as the file counts it: here in metres
+# above the ground.
 #
 # ## A dirty file
 #
@@ -833,10 +842,11 @@ bow_tie = next(building for building in quarter.buildings if building.name == "b
 assert volume_of(bow_tie) / 9 == pytest.approx(200, rel=1e-3)
 
 # %% [markdown]
-# Seven of eight. `city.source` says what became of each. "Derived" is what follows from the file by a rule: storeys of
-# 3 m (`storey_height`), the hall's outline without its tower, the lake that is no obstacle. "Mended" is the bow tie:
-# its two triangles of 100 m² each are kept. "Assumed" is what nobody knows, and only that makes a warning: the height
-# that we gave. **Read this report before you plan.**
+# Seven of eight. 40 ft became 12.2 m, and the comma was read as a decimal point. `city.source` says what became of the
+# rest, a line for each kind of case. "Derived" is what follows from the file by a rule: storeys of 3 m
+# (`storey_height`), the hall's outline without its tower, the lake that is no obstacle. "Mended" is the bow tie: its
+# two triangles of 100 m² each are kept. "Assumed" is what nobody knows, and only that makes a warning: the height that
+# we gave. **Read this report before you plan.**
 #
 # ### Where one may not fly
 #
@@ -920,9 +930,9 @@ assert np.array_equal(again.occupied, coarse.occupied)
 #
 # **Put the path of a file into the next cell and run it.** GeoJSON with heights or storeys (add `height="..."` to
 # `read_city` if the property isn't called `height`), CityJSON, or `.3dmap`. What can't be read is refused with its
-# place in the file and what to do about it. Begin with a large cell: Eq. 7. For hills add `terrain="heights.asc"`, a
-# GeoTIFF, or a `Terrain`. Then plan through it:
-# `astar(my_city, start, goal, min_clearance=3.5)`, with two points within `my_city.bounds`.
+# place in the file and what to do about it. Begin with a large cell: half of it makes eight times the voxels (Eq. 7
+# above). For hills add `terrain="heights.asc"`, a GeoTIFF, or a `Terrain`. Then plan through it: `astar(my_city, start,
+# goal, min_clearance=3.5)`, with two points within `my_city.bounds`.
 
 # %%
 MY_CITY = None  # put a path here, as in "downloads/delft.city.json"
@@ -946,14 +956,14 @@ None if my_city is None else scene.show(my_city)
 # | Table 1 | five buildings by their corners | together 144 372 m³; the voxels hold 0.3 % more |
 # | Table 1, no. 1 | one list of 15 corners | not convex, its hull would fill the notch: two wings |
 # | Fig. 5, Table 4 | safe distances 3.5, 4.5, 5.5 m | rings of radius 3, 4, 5 keep just these from a flat wall |
-# | Fig. 5 | 26 nodes watch the zone | as a price nearly: they miss 0.8, 1.0, 1.4 % of it |
+# | Fig. 5 | 26 nodes watch the zone | as a price nearly: they miss 0.8, 1.0, 1.4 % of it and add 4.7, 4.0, 6.8 % |
 # | Fig. 5 | a safe distance is kept | as a guarantee no: 2.55, 3.54, 3.81 m are accepted |
 # | Fig. 5 | no limit to the radius | walls thinner than $r$ cells are looked through; at 6 m the spire, too |
-# | Section 4 | a finer map takes much more work | 8 times the voxels for half the cell |
-# | not said | which voxels are occupied | by centres thin walls vanish; by touch only narrow alleys close |
+# | conclusion | a finer map takes much more work | 8 times the voxels for half the cell |
+# | not said | which voxels are occupied | by centres thin walls vanish; by touch alleys close, houses grow |
 #
 # The paper prints no count of voxels and doesn't say from where a distance is measured. Our reading, from the
-# centre of the UAV to the surface, is the one in which Table 4, Eq. 7 and the ring agree.
+# centre of the UAV to the surface, is the one in which REPARE's Table 4, its Eq. 7 and the ring agree.
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -973,5 +983,5 @@ assert all(fine.occupied.size == 8 * rough.occupied.size for rough, fine in pair
 # Three exercises: from a code back to its voxel, the distance from any point to a voxel, and how much clearance an
 # alley keeps on the most unlucky grid: [exercises](exercises/04_cities_exercises.ipynb).
 #
-# Next: [06 A*](06_astar.ipynb) finds the cheapest way through these voxels, and shows what Eqs 11-13 do with the
-# ring's penalty.
+# Next: [06 A*](06_astar.ipynb) finds the cheapest way through these voxels, and shows what REPARE's Eqs 11-13 do with
+# the ring's penalty.

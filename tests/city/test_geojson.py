@@ -280,6 +280,8 @@ def test_what_no_part_covers_stays_as_high_as_the_outline(geojson):
     city = read_geojson(geojson(outline, half, apart), crs="local")
     assert volume(city) == pytest.approx(50 * 20 + 50 * 6 + 50 * 9)
     assert volume(read_geojson(geojson(outline, no_part), crs="local")) == pytest.approx(100 * 20)
+    over = feature([[5, 0], [13, 0], [13, 10], [5, 10]], height=6, **{"building:part": "yes"})  # 5 of its 8 m
+    assert volume(read_geojson(geojson(outline, over), crs="local")) == pytest.approx(50 * 20 + 80 * 6)
     sliver = feature([[0, 0], [9.95, 0], [9.95, 10], [0, 10]], height=4, **{"building:part": "yes"})
     assert max(b.bounds[1, 2] for b in read_geojson(geojson(outline, sliver), crs="local").buildings) == 4
 
@@ -310,6 +312,7 @@ def test_in_a_file_of_openstreetmap_land_and_water_are_no_buildings(geojson):
         ([[[0, 0], [10, 0], [10, 10], [10, 14], [10, 10], [0, 10]]], 100),  # a spike
         ([[[0, 0], [10, 0], [10, 0], [10, 10], [0, 10], [0, 10], [0, 0]]], 100),  # corners that stand twice
         ([[[0, 0], [10, 0], [10, 10], [0, 10]], [[3, 3], [3, 3], [4, 4], [3, 3]]], 100),  # a hole without area
+        ([[[0, 0], [10, 0], [10, 10], [0, 10]], [[0, 0], [10, 0], [10, 10], [0, 10]]], 100),  # nothing but a hole
         (
             [[[0, 0], [10, 0], [10, 10], [0, 10]], [[2, 2], [6, 2], [6, 6], [2, 6]], [[4, 4], [8, 4], [8, 8], [4, 8]]],
             76,

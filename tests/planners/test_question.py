@@ -197,6 +197,9 @@ def test_the_cost_of_a_route_has_its_vertical_legs():
     high = astar(TOWN, low.en_route.points[0], ENDS[1], min_height=6.0)
     assert low.cost == pytest.approx(low.length)
     assert low.cost == pytest.approx(high.cost + low.takeoff)
+    both = astar(TOWN, (4.5, 18.5, 2.5), (36.5, 18.5, 10.5), min_height=6.0)
+    assert both.takeoff > 0 < both.landing
+    assert both.cost == pytest.approx(both.length)
     price = 1.0 + np.random.default_rng(0).random(TOWN.shape)
     priced = astar(TOWN, (4.5, 18.5, 2.5), ENDS[1], price=price, min_height=6.0)
     assert priced.cost == pytest.approx(priced.integral(TOWN, price), rel=1e-9)

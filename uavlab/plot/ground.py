@@ -67,7 +67,7 @@ def ground_words(city: City) -> str:
 def title_of(city: City, height: float, dark: str) -> str:
     """Title of a section: the city, the height [m] and above what, and what is dark or hatched."""
     apart = " " if datum_of(city) is not None else "\n"  # the longer words take a line more
-    if city.ground is not None:
+    if city.ground is not None and height < extent_of_ground(city)[1] + city.cell:
         dark += ", ground brown"
     return f"{plain(city.name)}, {height_words(city, height)}{apart}({dark})"
 
