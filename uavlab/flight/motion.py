@@ -182,12 +182,8 @@ def drift_on(spring, path, space, state, dt, most, every, rng, log):
 @compiled
 def patience(state):
     """Share of its speed with which the reference goes on: less where the UAV, as it sees itself, falls behind."""
-    behind = math.sqrt(
-        (state.seen_position[0] - state.target[0]) ** 2
-        + (state.seen_position[1] - state.target[1]) ** 2
-        + (state.seen_position[2] - state.target[2]) ** 2
-    )
-    return min(max(2.0 - behind / LEASH, 0.0), 1.0)
+    behind = squared_distance(state.seen_position, state.target)
+    return 1.0 if behind <= LEASH**2 else max(2.0 - math.sqrt(behind) / LEASH, 0.0)
 
 
 @compiled
@@ -283,9 +279,12 @@ def note(path, space, state, dt, every, thrust, log):
     outcome = FLYING
     if gap < space.touching:
         outcome = CRASHED
-    elif state.way[0] >= path.distance[-1] and apart(state.position, path.points[-1]) <= space.near_goal:
+    elif (
+        state.way[0] >= path.distance[-1]
+        and squared_distance(state.position, path.points[-1]) <= space.near_goal * space.near_goal
+    ):
         outcome = ARRIVED
-    elif apart(state.position, state.target) > LOST and space.near_goal < np.inf:
+    elif space.near_goal < np.inf and squared_distance(state.position, state.target) > LOST**2:
         outcome = BLOWN_BACK
     if state.counts[0] % every == 0 or outcome != FLYING:
         row = log[state.counts[1]]
@@ -311,9 +310,10 @@ def closest(space, state):
     end = in_cells(space, state.position)
     near = max(min(state.sums[0] / cell, 4.0), space.touching / cell)
     gap = cell * distance_to_obstacle(space.occupied, space.clearance, cell, end, near)
-    moved, before = apart(state.position, state.before), state.sums[2]
+    moved = squared_distance(state.position, state.before)
+    spare = state.sums[2] + gap - 2 * space.touching  # to be moved before it can have touched
     state.sums[2] = gap
-    if moved == 0.0 or (gap >= space.touching and (before + gap - moved) / 2 >= space.touching):
+    if moved == 0.0 or (gap >= space.touching and spare >= 0.0 and spare * spare >= moved):
         return gap
     start, touching = in_cells(space, state.before), space.touching / cell
     least = cell * segment_clearance(space.runs, start, end, max(gap, space.touching) / cell)
@@ -347,8 +347,9 @@ def in_cells(space, position):
 
 
 @compiled
-def apart(one, other):
-    return math.sqrt((one[0] - other[0]) ** 2 + (one[1] - other[1]) ** 2 + (one[2] - other[2]) ** 2)
+def squared_distance(one, other):
+    x, y, z = one[0] - other[0], one[1] - other[1], one[2] - other[2]
+    return x * x + y * y + z * z
 
 
 @compiled
