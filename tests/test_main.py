@@ -6,9 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from uavlab.__main__ import main
+from uavlab.flight import Flights
+from uavlab.report import Trial
 
 pytestmark = pytest.mark.filterwarnings("error:.*city.source tells all:UserWarning")
 
@@ -38,6 +41,7 @@ def test_goes_the_whole_way_from_weather_to_flights(tmp_path, capsys):
     assert rows["weather"] == "wind of 6.0 m/s, gusts up to 10.5 m/s"
     assert rows["offsets to be survived"] == "3.0 m (σ = 1.00 m)"
     assert rows["crashes in these gusts"] == "0 [0, 88.1] per 1 000 (40 flights)"  # 1 − 0.025^(1/40)
+    assert rows["gave up in these gusts"] == "0%"
     assert float(rows["fastest without slowing down"].split()[0]) >= 5
     assert page.count("<td>yes</td>") == 6  # the limits of the curve
 
@@ -276,3 +280,10 @@ def test_the_city_s_own_file_is_never_overwritten(town, capsys):
     assert main(["--city", file, "--crs", "local", "--height", "levels", "--out", file]) == 2
     assert "is the city's own file: choose another" in capsys.readouterr().err
     assert Path(file).read_text() == before
+
+
+def test_flights_that_give_up_are_told():
+    none = np.zeros(3)
+    outcome = np.array(["arrived", "gave up", "crashed"])
+    flights = Flights(outcome, none, none, none, np.zeros((3, 3)), np.zeros((3, 1, 3)))
+    assert Trial("", flights=flights).lines() == ["flown 3 times in gusts, crashed 1 times, gave up 1 times"]

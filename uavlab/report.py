@@ -53,7 +53,11 @@ class Trial(NamedTuple):
             kept = "all limits kept" if self.limits.feasible else "limits exceeded: " + ", ".join(self.exceeded())
             said.append(f"smoothed: {self.curve.length:.1f} m, at {self.limits.speed:g} m/s {kept}")
         if self.flights is not None:
-            said.append(f"flown {len(self.flights.outcome)} times in gusts, crashed {self.flights.crashed.sum()} times")
+            given_up = int((self.flights.outcome == "gave up").sum())
+            said.append(
+                f"flown {len(self.flights.outcome)} times in gusts, crashed {self.flights.crashed.sum()} times"
+                + f", gave up {given_up} times" * bool(given_up)
+            )
         return said
 
     def exceeded(self) -> list[str]:
@@ -134,6 +138,7 @@ def trial_table(trial: Trial, conditions: Conditions) -> list[tuple[str, str]]:
         across, up = flights.samples.std(axis=0)
         rows += [
             ("crashes in these gusts", f"{crash_rate(flights)} ({len(flights.outcome)} flights)"),
+            ("gave up in these gusts", f"{np.mean(flights.outcome == 'gave up'):.0%}"),
             ("offsets in these gusts", f"σ {across:.2f} m across the route, {up:.2f} m up and down"),
             ("nearest to an obstacle", f"{flights.clearance.min():.2f} m from the centre of the body"),
             ("time", f"{flights.duration.mean():.0f} s, slower than {conditions.uav.cruise_speed:g} m/s in turns"),

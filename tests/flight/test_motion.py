@@ -1,5 +1,6 @@
 """The point mass against closed forms and second-order theory, its limits, and what counts as a collision."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,12 +8,12 @@ import pytest
 from places import EXACT, SKY, beside_wall, straight
 
 from uavlab.city import City
-from uavlab.flight import Gps, OffsetProcess, Wind, fly, monte_carlo, offset_sigma
-from uavlab.flight.motion import LEAST_THRUST
+from uavlab.flight import Autopilot, Gps, OffsetProcess, Wind, fly, monte_carlo, offset_sigma
+from uavlab.flight.motion import LEASH, LEAST_THRUST
 from uavlab.flight.simulation import EFFICIENCY
 from uavlab.resilience import ADVANCED, Controller
 from uavlab.route import Route
-from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
+from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR, RISK_QUADROTOR
 from uavlab.weather.forces import STANDARD_AIR
 
 CALM = Wind(gusts="none")
@@ -34,11 +35,12 @@ def flown_offsets(wind, uav=LIGHT_QUADROTOR, speed=5.0, flights=120, **options):
     """Offsets (flights, seconds, 3) along the air stream, across it and up, without start and end."""
     pilot = replace(EXACT, speed=speed, **options)
     runs = monte_carlo(LONG, SKY, uav, wind, pilot, rng=1, flights=flights)
-    assert (runs.outcome == "arrived").all()
+    arrived = runs.outcome == "arrived"
+    assert arrived.mean() > 0.95
     pace = pilot.controller.speed_share
     stream = np.array(wind.mean) - [speed * pace, 0, 0]
     along = stream[:2] / max(np.linalg.norm(stream[:2]), 1e-12)
-    kept = runs.offsets[:, 12:-8]
+    kept = runs.offsets[arrived, 12 : int(runs.duration[arrived].min()) - 8]
     east, north = kept[..., 0], kept[..., 1]  # the route leads east
     return np.stack([east * along[0] + north * along[1], north * along[0] - east * along[1], kept[..., 2]], axis=-1)
 
@@ -186,15 +188,15 @@ def test_theory_fails_where_gusts_are_not_small():
     tail = Wind((5.01, 0), deviation=1.0)
     assert (sigmas(tail)[:2] > 20 * offset_sigma(LIGHT_QUADROTOR, tail, ground_velocity=(5, 0))[:2]).all()
     flat, wind = replace(LIGHT_QUADROTOR, max_tilt=np.radians(20)), Wind((-6, 0), deviation=3.0)
-    assert sigmas(wind, flat)[0] > 5 * offset_sigma(flat, wind, ground_velocity=(5, 0))[0]
+    assert sigmas(wind, flat)[0] > 2 * offset_sigma(flat, wind, ground_velocity=(5, 0))[0]
 
 
 def test_a_heavier_load_is_blown_about_less_until_its_thrust_runs_out():
-    """Measured in 9 m/s across with gusts of 2 m/s: 0.58 m without load, 0.36 m with 1 kg; of 6 m/s: 1.8 and 3.6 m."""
+    """Measured in 9 m/s across with gusts of 2 m/s: 0.58 m without load, 0.36 m with 1 kg; of 6 m/s: 1.8 and 2.5 m."""
     loaded = LIGHT_QUADROTOR.loaded(1.0)
     mild, wild = (Wind((0, -9.0), deviation=deviation) for deviation in (2.0, 6.0))
     assert sigmas(mild, loaded) / sigmas(mild) == pytest.approx(MASS / (MASS + 1), rel=0.08)
-    assert sigmas(wild, loaded)[0] > 1.5 * sigmas(wild)[0]
+    assert sigmas(wild, loaded)[0] > 1.3 * sigmas(wild)[0]
 
 
 def test_gps_errors_add_to_the_offsets():
@@ -223,6 +225,129 @@ def test_a_route_through_a_wall_crashes_at_the_wall(disturbance):
     assert flight.reason == f"crashed after {flight.duration:.1f} s at (39.5, 10.0, 10.0)".replace(
         "39.5", f"{flight.position[-1, 0]:.1f}"
     )
+
+
+FAR = City(np.zeros((800, 10, 10), bool), cell=2.0)
+MILE = Route([(20, 10, 10), (1520, 10, 10)])
+HURRIED = Autopilot(speed=16.0)
+
+
+def changing(after, later):
+    """A head wind of 5 m/s, and another from some time on [s]."""
+    return lambda time: Wind((-5.0 if time < after else later, 0), "none")
+
+
+def test_it_arrives_when_the_uav_is_at_the_goal_also_with_more_load_than_the_speed_asked_for_allows():
+    """Before, its reference arrived after 131 s, and the UAV was 596 m behind."""
+    heavy = LIGHT_QUADROTOR.loaded(1.3)
+    flight = fly(MILE, FAR, heavy, Wind((-5, 0), "none"), HURRIED, rng=0)
+    assert flight.outcome == "arrived"
+    assert np.linalg.norm(flight.position[-1] - MILE.points[-1]) <= HURRIED.acceptance_radius
+    assert flight.duration > 250
+    assert np.linalg.norm(flight.offset, axis=1).max() < 2 * LEASH
+    gusty = monte_carlo(MILE, FAR, LIGHT_QUADROTOR.loaded(1.2), Wind((-8.5, 0)), HURRIED, rng=0, flights=30)
+    assert (np.linalg.norm(gusty.place - MILE.points[-1], axis=1)[gusty.outcome == "arrived"] <= 2).all()
+    assert (gusty.outcome == "arrived").mean() > 0.8
+
+
+@pytest.mark.parametrize(
+    ("later", "reason"),
+    [(-30.0, r"blown back after \d+\.\d s at .*, 30 m from its reference"),
+     (-17.9, r"out of time after \d+\.\d s at .*, 1\d{3}\.\d m from the goal")],
+)  # fmt: skip
+def test_a_wind_that_rises_in_flight_blows_it_back_or_holds_it_up(later, reason):
+    flight = fly(MILE, FAR, LIGHT_QUADROTOR, changing(10, later), HURRIED, rng=0)
+    assert flight.outcome == "gave up"
+    assert re.fullmatch(reason, flight.reason)
+    flights = monte_carlo(MILE, FAR, LIGHT_QUADROTOR, changing(10, later), HURRIED, rng=0, flights=2)
+    assert (flights.outcome == "gave up").all()
+    assert flights.duration == pytest.approx(flight.duration, abs=2.0)
+    assert repr(flights) == "<Flights: 2 gave up>"
+
+
+def test_a_wind_that_rises_and_falls_only_delays_it():
+    calm = fly(MILE, FAR, LIGHT_QUADROTOR, changing(1e9, 0.0), HURRIED, rng=0)
+    delayed = fly(
+        MILE, FAR, LIGHT_QUADROTOR, lambda time: changing(20, -14.0 if time < 60 else -5.0)(time), HURRIED, rng=0
+    )
+    assert calm.outcome == delayed.outcome == "arrived"
+    assert delayed.duration > calm.duration + 20
+
+
+def test_an_untrimmed_wind_that_holds_it_farther_off_than_accepted_is_no_arrival():
+    pilot = replace(EXACT, trimmed=False, acceptance_radius=1.0)
+    flight = fly(straight(40.0), SKY, LIGHT_QUADROTOR, Wind((0, 9.0), "none"), pilot, rng=0)
+    assert abs(flight.offset[-1, 1]) > 1.0
+    assert flight.outcome == "gave up"
+    assert "out of time" in flight.reason
+    assert (
+        fly(
+            straight(40.0), SKY, LIGHT_QUADROTOR, Wind((0, 9.0), "none"), replace(pilot, acceptance_radius=3.0), rng=0
+        ).outcome
+        == "arrived"
+    )
+
+
+@pytest.mark.parametrize("share", [0.5, 0.8, 1.6])
+def test_the_feed_forward_knows_the_share_of_the_speed(share):
+    """The same motion, as a share of another plan: before, at half the speed half of it was missing, and 0.15 m."""
+    angle = np.linspace(0, 6 * np.pi, 1200)
+    circle = Route(np.column_stack([200 + 6 * np.cos(angle), 150 + 6 * np.sin(angle), np.full(1200, 50.0)]))
+    whole, part = (
+        fly(
+            circle,
+            SKY,
+            LIGHT_QUADROTOR,
+            CALM,
+            replace(EXACT, controller=Controller("any", by, 1.0), speed=2.5 / by),
+            rng=0,
+        )
+        .offset[1000:2000, 1]
+        .mean()
+        for by in (1.0, share)
+    )
+    assert part == pytest.approx(whole, abs=2e-3)
+    assert abs(whole) < 0.07
+
+
+WALL = np.zeros((60, 20, 20), bool)
+WALL[40] = True
+
+
+@pytest.mark.parametrize("time_step", [0.2, 0.1, 0.02])
+@pytest.mark.parametrize(
+    ("disturbance", "uav"),
+    [(CALM, RISK_QUADROTOR), (OffsetProcess(0.5), RISK_QUADROTOR), (OffsetProcess(0.5, rough=True), LIGHT_QUADROTOR)],
+    ids=["body", "offsets", "rough"],
+)
+def test_nothing_tunnels_through_a_wall_at_any_permitted_step(disturbance, uav, time_step):
+    """Before, at 20 m/s and 0.2 s, 100 of 100 bodies and 91 of 100 offsets got through a metre of wall."""
+    route = Route([(10, 10, 10), (55, 10, 10)])
+    flights = monte_carlo(
+        route, City(WALL), uav, disturbance, Autopilot(speed=20.0), rng=1, flights=40, time_step=time_step
+    )
+    assert flights.crashed.all()
+    touching = 0.98 * uav.diameter / 2
+    assert flights.place[:, 0] == pytest.approx(40 - touching, abs=1e-4)
+    assert flights.clearance == pytest.approx(touching, abs=1e-4)
+
+
+def test_a_step_past_a_corner_touches_nothing():
+    occupied = np.zeros((40, 40, 10), bool)
+    occupied[:20, :20] = True
+    around = Route([(10.0, 22.0, 5.0), (22.0, 22.0, 5.0), (22.0, 10.0, 5.0)])
+    flight = fly(
+        around, City(occupied), LIGHT_QUADROTOR, OffsetProcess(0.0), Autopilot(speed=15.0), rng=0, time_step=0.2
+    )
+    assert flight.outcome == "arrived"
+
+
+def test_energy_counts_the_air_of_each_moment():
+    thin, thick = Wind(gusts="none", air_density=0.9), Wind(gusts="none", air_density=1.3)
+    one, other = (hovering(wind).energy for wind in (thin, thick))
+    assert one / other == pytest.approx(np.sqrt(1.3 / 0.9), rel=1e-3)
+    half = hovering(thin).duration / 2
+    assert hovering(lambda time: thin if time < half else thick).energy == pytest.approx((one + other) / 2, rel=5e-3)
 
 
 @pytest.mark.parametrize(("diameter", "outcome"), [(0.9, "arrived"), (1.02, "arrived"), (1.03, "crashed")])

@@ -134,7 +134,8 @@ def test_the_margin_is_reserve_less_drag_and_ends_where_it_is_used_up():
     reserve = np.sqrt(15.5**2 - (WEAK.weight + rain_force(30, WEAK.rain_area)) ** 2)
     assert np.subtract(*level_thrust(WEAK, Wind(rain_mm_per_h=30))) == pytest.approx(reserve)
     most = np.sqrt(reserve / (0.5 * 1.225 * WEAK.drag_area))
-    assert why_grounded(straight(), WEAK, Wind((0, most - 1e-6), rain_mm_per_h=30)) == ""
+    assert why_grounded(straight(), WEAK, Wind((0, 0.999 * most), rain_mm_per_h=30)) == ""
+    assert "crosswind" in why_grounded(straight(), WEAK, Wind((0, most - 1e-6), rain_mm_per_h=30))  # it gets nowhere
     assert "0.0 N short" in why_grounded(straight(), WEAK, Wind((0, most + 1e-6), rain_mm_per_h=30))
 
 

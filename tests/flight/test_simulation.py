@@ -298,8 +298,8 @@ def test_offsets_do_not_jump_when_controller_or_disturbance_change():
 def test_offsets_and_their_speeds_are_handed_over_in_metres():
     city, route = beside_wall(3.5)
     setup, _ = setup_of(route, city, UAV, SWAY, EXACT, 0.02)
-    old = setup.model(OffsetProcess((1.0, 2.0, 0.5), mean=(0.1, 0, 0)), EXACT.controller)
-    new = setup.model(OffsetProcess((1.5, 0.0, 0.5)), ADVANCED)
+    old = setup.model(OffsetProcess((1.0, 2.0, 0.5), mean=(0.1, 0, 0)), EXACT.controller, setup.path)
+    new = setup.model(OffsetProcess((1.5, 0.0, 0.5)), ADVANCED, setup.path)
     state = start_of(setup)
     state.lags[:] = [(0.4, 0.3), (1.0, 1.0), (-2.0, 0.5)]
     old.hand_over(state, new)

@@ -42,6 +42,8 @@ class Autopilot:
     strategy : {"adaptive", "grounded", "fixed"}
         What becomes of the monitor's advice: its controller is taken; the UAV lands at once when it would change to the
         advanced one (one that begins with it never asks for that); nothing, as if there were no monitor.
+    acceptance_radius : float
+        In a wind it has arrived when it is so near to the goal [m].
     interval : float
         How often the monitor, and a disturbance that changes, are looked at [s].
 
@@ -57,6 +59,7 @@ class Autopilot:
     gps: Gps = GPS
     monitor: Monitor | None = None
     strategy: str = "adaptive"
+    acceptance_radius: float = 2.0
     interval: float = 0.5
 
     def __post_init__(self) -> None:
@@ -68,6 +71,7 @@ class Autopilot:
         checks.not_negative_number("gps.position", self.gps.position)
         checks.not_negative_number("gps.velocity", self.gps.velocity)
         checks.one_of("strategy", self.strategy, STRATEGIES)
+        checks.positive_number("acceptance_radius", self.acceptance_radius)
         checks.positive_number("interval", self.interval)
 
 

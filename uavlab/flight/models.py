@@ -56,6 +56,7 @@ def model_of(
         drag=0.5 * now.air_density * uav.drag_area,
         tan_tilt=float(np.tan(uav.max_tilt)),
         rain=float(rain_force(now.rain_mm_per_h, uav.rain_area)),
+        disc=float(np.sqrt(2 * now.air_density * uav.rotor_area)),
         trim=np.array(now.mean) if autopilot.trimmed else np.zeros(3),
         omega=controller.natural_frequency,
         pace=controller.speed_share,

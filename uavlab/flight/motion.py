@@ -5,12 +5,25 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uavlab.city.segments import Runs, segment_clearance
 from uavlab.city.voxels import distance_to_obstacle
 from uavlab.compiled import compiled
 from uavlab.vehicle import GRAVITY
 
 PREVIEW = 0.25
 """How far ahead and back the autopilot looks to know how its velocity has to change [s]."""
+
+LEASH = 4.0
+"""From so far on the reference waits for the UAV [m]; at twice as far it stands still."""
+
+LOST = 30.0
+"""Who is as far from the reference gives up [m]: the wind is stronger than the UAV."""
+
+HALVINGS = 24
+"""To find where on a step a body first touches something."""
+
+LESS = 1 - 1e-12
+"""What is nearer than a distance is less than it, whatever the rounding."""
 
 LEAST_THRUST, LEAST_LIFT = 0.1, 0.5
 """Of the greatest, and of the weight, whichever is less: rotors can't push down, but a strong UAV can still sink."""
@@ -19,7 +32,7 @@ COLUMNS = ("time", "x", "y", "z", "x_ref", "y_ref", "z_ref", "along", "across", 
 """What is logged: position and reference [m], offset in the route's frame [m], thrust [N], speed over ground [m/s]."""
 
 NONE, GAUSSIAN, OU, DRYDEN = range(4)
-FLYING, ARRIVED, CRASHED = range(3)
+FLYING, ARRIVED, CRASHED, BLOWN_BACK = range(4)
 
 
 class Body(NamedTuple):
@@ -30,6 +43,7 @@ class Body(NamedTuple):
     drag: float  # ½ ρ C S [kg/m]
     tan_tilt: float
     rain: float  # [N]
+    disc: float  # √(2 ρ A) of its rotors: an ideal one hovers with T^1.5/√(2 ρ A)
     trim: np.ndarray  # (3,) the mean wind that the autopilot reckons with [m/s]
     omega: float  # ω_n of its position control [rad/s]
     pace: float  # share of the planned speed
@@ -66,16 +80,19 @@ class Space(NamedTuple):
     """The city."""
 
     occupied: np.ndarray
+    runs: Runs
     clearance: np.ndarray  # [m]
     origin: np.ndarray
     cell: float
     touching: float  # distance at which the body collides [m]
+    near_goal: float  # distance from the goal at which it has arrived [m]; infinite for offsets, which have no body
 
 
 class State(NamedTuple):
     """All that changes; flights go on from it."""
 
     position: np.ndarray  # (3,) [m]
+    before: np.ndarray  # (3,) a step ago
     velocity: np.ndarray
     target: np.ndarray  # (3,) where it should be
     seen_position: np.ndarray  # as the autopilot has it
@@ -84,18 +101,19 @@ class State(NamedTuple):
     gust: np.ndarray  # (3,) [m/s]
     heading: np.ndarray  # (2,) of the route, level
     way: np.ndarray  # (2,) distance along the route [m], its leg
-    sums: np.ndarray  # (2,) least distance to obstacles [m], ∫ T^1.5 dt
+    sums: np.ndarray  # (3,) least distance to obstacles [m], energy to move air [J], distance to obstacles now [m]
     counts: np.ndarray  # (2,) steps made, rows logged
 
 
 @compiled
 def fly_on(body, air, path, space, state, dt, most, every, rng, log):
-    """Fly up to `most` steps: FLYING, ARRIVED or CRASHED."""
+    """Fly up to `most` steps: FLYING, ARRIVED, CRASHED or BLOWN_BACK."""
     target_velocity, ahead, back = np.empty(3), np.empty(3), np.empty(3)
     thrust, stream = np.empty(3), np.empty(3)
     for _ in range(most):
         step = state.counts[0]
-        speed = advance(path, state, dt * body.pace if step > 0 else 0.0, target_velocity) * body.pace
+        pace = body.pace * patience(state)
+        speed = advance(path, state, dt * pace if step > 0 else 0.0, target_velocity) * pace
         velocity_at(path, state, speed * PREVIEW, ahead)
         velocity_at(path, state, -speed * PREVIEW, back)
         blow(air, state, step, rng)
@@ -104,8 +122,8 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
                 state.seen_position[a] = state.position[a] + body.gps_position * rng.standard_normal()
                 state.seen_velocity[a] = state.velocity[a] + body.gps_velocity * rng.standard_normal()
         for a in range(3):
-            target_velocity[a] *= body.pace
-            change = body.pace**2 * (ahead[a] - back[a]) / (2 * PREVIEW)
+            target_velocity[a] *= pace
+            change = pace * (ahead[a] - back[a]) / (2 * PREVIEW)
             pull = body.omega**2 * (state.target[a] - state.seen_position[a])
             damping = 2 * body.omega * (target_velocity[a] - state.seen_velocity[a])
             thrust[a] = body.mass * (change + pull + damping)
@@ -127,9 +145,10 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
             if a == 2:
                 force -= body.mass * GRAVITY + body.rain
             state.velocity[a] += dt * force / body.mass
+            state.before[a] = state.position[a]
             state.position[a] += dt * state.velocity[a]
             state.seen_position[a] += dt * state.seen_velocity[a]
-        state.sums[1] += dt * pulled**1.5
+        state.sums[1] += dt * pulled**1.5 / body.disc
     return FLYING
 
 
@@ -152,11 +171,19 @@ def drift_on(spring, path, space, state, dt, most, every, rng, log):
             position = state.target[a] + spring.mean[a] + spring.sigma[a] * state.lags[a, 0]
             moved = (position - state.position[a]) / dt
             state.velocity[a] = moved if state.counts[0] > 0 else spring.pace * target_velocity[a]
+            state.before[a] = state.position[a] if state.counts[0] > 0 else position
             state.position[a] = position
         outcome = note(path, space, state, dt, every, np.nan, log)
         if outcome != FLYING:
             return outcome
     return FLYING
+
+
+@compiled
+def patience(state):
+    """Share of its speed with which the reference goes on: less where the UAV, as it sees itself, falls behind."""
+    behind = squared_distance(state.seen_position, state.target)
+    return 1.0 if behind <= LEASH**2 else max(2.0 - math.sqrt(behind) / LEASH, 0.0)
 
 
 @compiled
@@ -247,19 +274,18 @@ def limit(body, thrust):
 @compiled
 def note(path, space, state, dt, every, thrust, log):
     """Look around after a step, log it if it is time or over, and count it."""
-    point = (
-        (state.position[0] - space.origin[0]) / space.cell,
-        (state.position[1] - space.origin[1]) / space.cell,
-        (state.position[2] - space.origin[2]) / space.cell,
-    )
-    near = max(min(state.sums[0] / space.cell, 4.0), space.touching / space.cell)
-    gap = space.cell * distance_to_obstacle(space.occupied, space.clearance, space.cell, point, near)
+    gap = closest(space, state)
     state.sums[0] = min(state.sums[0], gap)
     outcome = FLYING
     if gap < space.touching:
         outcome = CRASHED
-    elif state.way[0] >= path.distance[-1]:
+    elif (
+        state.way[0] >= path.distance[-1]
+        and squared_distance(state.position, path.points[-1]) <= space.near_goal * space.near_goal
+    ):
         outcome = ARRIVED
+    elif space.near_goal < np.inf and squared_distance(state.position, state.target) > LOST**2:
+        outcome = BLOWN_BACK
     if state.counts[0] % every == 0 or outcome != FLYING:
         row = log[state.counts[1]]
         row[0] = state.counts[0] * dt
@@ -275,6 +301,55 @@ def note(path, space, state, dt, every, thrust, log):
         state.counts[1] += 1
     state.counts[0] += 1
     return outcome
+
+
+@compiled
+def closest(space, state):
+    """Distance to obstacles [m], the least since the step before if it may have touched; then it is where it did."""
+    cell = space.cell
+    end = in_cells(space, state.position)
+    near = max(min(state.sums[0] / cell, 4.0), space.touching / cell)
+    gap = cell * distance_to_obstacle(space.occupied, space.clearance, cell, end, near)
+    moved = squared_distance(state.position, state.before)
+    spare = state.sums[2] + gap - 2 * space.touching  # to be moved before it can have touched
+    state.sums[2] = gap
+    if moved == 0.0 or (gap >= space.touching and spare >= 0.0 and spare * spare >= moved):
+        return gap
+    start, touching = in_cells(space, state.before), space.touching / cell
+    least = cell * segment_clearance(space.runs, start, end, max(gap, space.touching) / cell)
+    if min(least, gap) >= space.touching:
+        return least
+    flown, most = 0.0, 1.0  # the farther along the step, the less the least distance up to there
+    for _ in range(HALVINGS):
+        share = (flown + most) / 2
+        there = (
+            start[0] + share * (end[0] - start[0]),
+            start[1] + share * (end[1] - start[1]),
+            start[2] + share * (end[2] - start[2]),
+        )
+        if segment_clearance(space.runs, start, there, touching) < touching:
+            most = share
+        else:
+            flown = share
+    for a in range(3):
+        state.position[a] = state.before[a] + most * (state.position[a] - state.before[a])
+    least = cell * segment_clearance(space.runs, start, in_cells(space, state.position), touching)
+    return min(least, LESS * space.touching)
+
+
+@compiled
+def in_cells(space, position):
+    return (
+        (position[0] - space.origin[0]) / space.cell,
+        (position[1] - space.origin[1]) / space.cell,
+        (position[2] - space.origin[2]) / space.cell,
+    )
+
+
+@compiled
+def squared_distance(one, other):
+    x, y, z = one[0] - other[0], one[1] - other[1], one[2] - other[2]
+    return x * x + y * y + z * z
 
 
 @compiled

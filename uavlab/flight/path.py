@@ -8,13 +8,19 @@ from uavlab.flight.disturbance import Wind
 from uavlab.route import Route
 from uavlab.spline.curve import BANK
 from uavlab.vehicle import GRAVITY, UAV
-from uavlab.weather import rain_force, reachable_ground_speed, wind_drag
+from uavlab.weather import rain_force, wind_drag
 
 TURN_JUMP = 1.0
 """By how much the velocity may jump at a waypoint [m/s]; the autopilot begins to turn a moment before."""
 
 BRAKING = 2.0
 """Along the route [m/s²]."""
+
+CRUISE = 0.8
+"""Share of the thrust left over sideways that steady drag may take; the rest is for gusts and turns."""
+
+LEAST_AGILITY = 0.1
+"""Of a UAV that a wind which came in flight leaves nothing [m/s²]."""
 
 CREEP = 0.1
 """With what a flight begins and ends [m/s]."""
@@ -37,7 +43,7 @@ def constant_speed(route: Route, speed: float) -> Path:
 
 
 def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
-    """As fast as asked, but for turns, for head winds, and for what the thrust left over can brake.
+    """As fast as asked, but for turns, for head winds, for the drag that the thrust holds and what it can brake.
 
     Half of what the rotors have left beside weight, rain and mean wind is for turns, half for gusts; it may bank by
     30° at most.
@@ -45,9 +51,8 @@ def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
     points, distance, direction = geometry(route)
     mass = uav.weight / GRAVITY
     held, pushed = level_thrust(uav, wind)
-    agility = min(GRAVITY * np.tan(BANK), 0.5 * (held - pushed) / mass)
-    reachable = reachable_ground_speed(uav.top_speed, wind.mean, direction)
-    on_legs = np.minimum(speed, reachable)
+    agility = max(min(GRAVITY * np.tan(BANK), 0.5 * (held - pushed) / mass), LEAST_AGILITY)
+    on_legs = np.clip(ground_speed_held(uav, wind, direction, CRUISE), CREEP, max(speed, CREEP))
     at_points = np.full(len(points), CREEP)
     turn = np.arccos(np.clip((direction[:-1] * direction[1:]).sum(axis=1), -1.0, 1.0))
     apart = (np.diff(distance)[:-1] + np.diff(distance)[1:]) / 2
@@ -80,6 +85,19 @@ def level_thrust(uav: UAV, wind: Wind) -> tuple[float, float]:
     return held, float(np.linalg.norm(drag))
 
 
+def air_speed_held(uav: UAV, wind: Wind, share: float = 1.0) -> float:
+    """Greatest steady speed through the air [m/s]: the top speed, or less where a share of the thrust holds less."""
+    held, _ = level_thrust(uav, wind)
+    return min(uav.top_speed, float(np.sqrt(2 * share * held / (wind.air_density * uav.drag_area))))
+
+
+def ground_speed_held(uav: UAV, wind: Wind, direction: np.ndarray, share: float = 1.0) -> np.ndarray:
+    """Greatest steady speed over ground on each leg (L, 3), (L,) [m/s]; −∞ where the wind blows it off its course."""
+    fastest, along = air_speed_held(uav, wind, share), direction @ wind.mean
+    across = np.sqrt(np.maximum(wind.speed**2 - along**2, 0.0))
+    return np.where(across < fastest, along + np.sqrt(np.maximum(fastest**2 - across**2, 0.0)), -np.inf)
+
+
 def why_grounded(route: Route, uav: UAV, wind: Wind) -> str:
     """Why a UAV can't fly a route in a wind; empty if it can."""
     held, pushed = level_thrust(uav, wind)
@@ -92,10 +110,15 @@ def why_grounded(route: Route, uav: UAV, wind: Wind) -> str:
     along = direction @ wind.mean
     across = np.sqrt(np.maximum(wind.speed**2 - along**2, 0.0))
     worst = int(np.argmax(across))
-    if across[worst] >= uav.top_speed:
-        return f"crosswind of {across[worst]:.1f} m/s on leg {worst}, the top speed is {uav.top_speed:g} m/s"
-    slowest = reachable_ground_speed(uav.top_speed, wind.mean, direction)
+    fastest = air_speed_held(uav, wind)
+    limit = f"the top speed is {uav.top_speed:g} m/s"
+    if fastest < uav.top_speed:
+        limit = f"its thrust holds {fastest:.1f} m/s through the air"
+    if across[worst] >= fastest:
+        return f"crosswind of {across[worst]:.1f} m/s on leg {worst}, {limit}"
+    slowest = ground_speed_held(uav, wind, direction)
     worst = int(np.argmin(slowest))
     if slowest[worst] <= CREEP:
-        return f"head wind of {-along[worst]:.1f} m/s on leg {worst}, the top speed is {uav.top_speed:g} m/s"
+        side = "head wind" if -along[worst] >= across[worst] else "crosswind"
+        return f"{side} of {max(-along[worst], across[worst]):.1f} m/s on leg {worst}, {limit}"
     return ""

@@ -20,9 +20,9 @@ class Flight:
 
     Attributes
     ----------
-    outcome : {"arrived", "crashed", "landed", "grounded"}
+    outcome : {"arrived", "crashed", "landed", "gave up", "grounded"}
     reason : str
-        Where and when it crashed, why it landed or never took off; empty when it arrived.
+        Where and when it crashed, why it landed, gave up or never took off; empty when it arrived.
     log : (T, 12) array
         A row each time step, see `uavlab.flight.motion.COLUMNS`.
     clearance : float
@@ -85,7 +85,7 @@ class Flights:
     Attributes
     ----------
     outcome : (N,) array of str
-        "arrived", "crashed", "landed" or "grounded".
+        "arrived", "crashed", "landed", "gave up" or "grounded".
     duration, clearance, energy : (N,) arrays
         As for `Flight` [s], [m], [J].
     place : (N, 3) array

@@ -13,7 +13,7 @@ from uavlab.city.voxels import distance_to_obstacle
 from uavlab.flight.autopilot import AUTOPILOT, Autopilot
 from uavlab.flight.disturbance import OffsetProcess, Wind
 from uavlab.flight.models import Model, model_of
-from uavlab.flight.motion import ARRIVED, COLUMNS, CRASHED, FLYING, Space, State, steps_to_goal
+from uavlab.flight.motion import ARRIVED, BLOWN_BACK, COLUMNS, CRASHED, FLYING, Space, State, steps_to_goal
 from uavlab.flight.path import Path, constant_speed, planned_speed, why_grounded
 from uavlab.flight.results import Flight, Flights
 from uavlab.resilience import ADVANCED, BASIC, Controller
@@ -33,13 +33,19 @@ LONGEST_TURN = 0.2
 EFFICIENCY = 0.5
 """Share of the battery's power that moves air: rotors about 0.7, motors and their control about 0.75."""
 
+PATIENCE, PAUSE = 3.0, 60.0
+"""A flight is out of time after so many times the planned duration, and so many seconds more."""
+
 BATCH = 100
 
 
 class Setup(NamedTuple):
     """A question that was checked."""
 
+    route: Route
+    speed: float
     path: Path
+    """As planned in the first wind."""
     space: Space
     uav: UAV
     disturbance: Disturbance
@@ -47,8 +53,12 @@ class Setup(NamedTuple):
     time_step: float
     altitude: float
 
-    def model(self, now: Wind | OffsetProcess, controller: Controller) -> Model:
-        return model_of(now, controller, self.uav, self.autopilot, self.path, self.altitude, self.time_step)
+    def model(self, now: Wind | OffsetProcess, controller: Controller, path: Path) -> Model:
+        return model_of(now, controller, self.uav, self.autopilot, path, self.altitude, self.time_step)
+
+    def path_in(self, now: Wind | OffsetProcess) -> Path:
+        """The same route as fast as another wind allows."""
+        return planned_speed(self.route, self.uav, now, self.speed) if isinstance(now, Wind) else self.path
 
 
 def fly(
@@ -66,8 +76,9 @@ def fly(
 
     In a `Wind` the UAV is a point mass: m a = thrust + ½ ρ C S |V_rel| V_rel − weight − rain. Its autopilot sends a
     reference along the route, no faster than turns and thrust allow, and pulls the UAV after it like a critically
-    damped spring, by what GPS says. Thrust and tilt are limited, height first. As an `OffsetProcess` the offsets are
-    simply added to a reference of constant speed.
+    damped spring, by what GPS says; where the UAV falls behind, the reference waits. Thrust and tilt are limited,
+    height first. It has arrived when it is near the goal. As an `OffsetProcess` the offsets are simply added to a
+    reference of constant speed, and what arrives is the reference.
 
     Parameters
     ----------
@@ -89,7 +100,9 @@ def fly(
     Returns
     -------
     Flight
-        Wind above what the thrust can hold gives `outcome` "grounded" with the margin in `reason`.
+        Wind above what the thrust can hold gives `outcome` "grounded" with the margin in `reason`. A UAV that can't
+        keep up "gave up": it was blown back, 30 m from its reference, or ran out of time, three times what was planned
+        and a minute.
 
     Raises
     ------
@@ -219,9 +232,10 @@ def setup_of(
     else:
         path = constant_speed(way, speed)
     touching = (1 - CONTACT) * uav.diameter / 2
-    space = Space(city.occupied, city.clearance, city.origin, city.cell, touching)
+    near_goal = autopilot.acceptance_radius if isinstance(first, Wind) else np.inf
+    space = Space(city.occupied, city.runs, city.clearance, city.origin, city.cell, touching, near_goal)
     altitude = float(np.clip(way.points[:, 2].mean() - city.origin[2], LOWEST, HIGHEST))
-    return Setup(path, space, uav, disturbance, autopilot, float(time_step), altitude), ""
+    return Setup(way, speed, path, space, uav, disturbance, autopilot, float(time_step), altitude), ""
 
 
 def now_of(disturbance: Disturbance, time: float) -> Wind | OffsetProcess:
@@ -237,20 +251,24 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
     autopilot, dt = setup.autopilot, setup.time_step
     monitor = None if autopilot.strategy == "fixed" else copy.deepcopy(autopilot.monitor)
     controller = monitor.controller if monitor else autopilot.controller
-    now = now_of(setup.disturbance, 0.0)
-    model = setup.model(now, controller)
+    now, path = now_of(setup.disturbance, 0.0), setup.path
+    model = setup.model(now, controller, path)
     state = start_of(setup)
-    watched = monitor is not None or callable(setup.disturbance)
-    most = max(round(autopilot.interval / dt), 1) if watched else steps_to_goal(setup.path, model.pace, dt)
-    logs, landed = [], False
+    most = planned = steps_to_goal(path, model.pace, dt)
+    if monitor is not None or callable(setup.disturbance):
+        most = max(round(autopilot.interval / dt), 1)
+    longest = PATIENCE * planned + PAUSE / dt
+    logs, ending = [], ""
     while True:
         log = np.empty((most // every + 2, len(COLUMNS)))
         state.counts[1] = 0
-        outcome = model.run(setup.path, setup.space, state, dt, most, every, generator, log)
+        outcome = model.run(path, setup.space, state, dt, most, every, generator, log)
         logs.append(log[: state.counts[1]])
-        if outcome != FLYING or landed:
+        if outcome != FLYING or ending:
             break
         time = float(state.counts[0] * dt)
+        if state.counts[0] > longest:
+            ending = "out of time"
         then, advised = now_of(setup.disturbance, time), controller
         if type(then) is not type(now):
             raise ValueError(
@@ -258,24 +276,32 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
                 f"after {type(now).__name__}"
             )
         if monitor:
-            advised = monitor.observe(time, off_route(setup.path, state), room(setup.space, state))
+            advised = monitor.observe(time, off_route(path, state), room(setup.space, state))
             if autopilot.strategy == "grounded" and advised != controller:
-                landed, most, every = True, 1, 1  # one step more, to log where
+                ending = "landed"
+        if ending:
+            most, every = 1, 1  # one step more, to log where
         if (then, advised) != (now, controller):
+            path = setup.path_in(then) if then != now else path
             now, controller = then, advised
-            changed = setup.model(now, controller)
+            changed = setup.model(now, controller, path)
             model.hand_over(state, changed)
             model = changed
     flight_log = np.concatenate(logs)
     where = f"after {flight_log[-1, 0]:.1f} s at {checks.show(flight_log[-1, 1:4])}"
     energy = np.nan
     if isinstance(now, Wind):
-        energy = float(state.sums[1] / np.sqrt(2 * now.air_density * setup.uav.rotor_area) / EFFICIENCY)
+        energy = float(state.sums[1] / EFFICIENCY)
     changes = monitor.log if monitor else []
     if outcome == CRASHED:
         name, reason = "crashed", f"crashed {where}"
     elif outcome == ARRIVED:
         name, reason = "arrived", ""
+    elif outcome == BLOWN_BACK:
+        name, reason = "gave up", f"blown back {where}, {behind(state):.0f} m from its reference"
+    elif ending == "out of time":
+        left = float(np.linalg.norm(state.position - path.points[-1]))
+        name, reason = "gave up", f"out of time {where}, {left:.1f} m from the goal"
     else:
         name, reason = "landed", f"landed {where}: {changes[-1].reason}"
     return Flight(name, reason, flight_log, float(state.sums[0]), energy, changes)
@@ -286,6 +312,7 @@ def start_of(setup: Setup) -> State:
     position = setup.path.points[0].copy()
     return State(
         position=position,
+        before=position.copy(),
         velocity=np.zeros(3),
         target=position.copy(),
         seen_position=position.copy(),
@@ -294,9 +321,14 @@ def start_of(setup: Setup) -> State:
         gust=np.zeros(3),
         heading=np.array([1.0, 0.0]),
         way=np.zeros(2),
-        sums=np.array([np.inf, 0.0]),
+        sums=np.array([np.inf, 0.0, np.inf]),
         counts=np.zeros(2, dtype=np.int64),
     )
+
+
+def behind(state: State) -> float:
+    """Distance from the reference [m]."""
+    return float(np.linalg.norm(state.position - state.target))
 
 
 def off_route(path: Path, state: State) -> float:
