@@ -73,6 +73,42 @@ def test_without_a_cache_folder_everything_works_after_one_warning(read_only_pac
     assert "set NUMBA_CACHE_DIR to a folder you may write" in about_cache[0][1]
 
 
+@pytest.fixture
+def package(tmp_path):
+    """A copy of the package without anything compiled, to spoil."""
+    shutil.copytree(PACKAGE, tmp_path / "uavlab", ignore=shutil.ignore_patterns("__pycache__"))
+    return tmp_path
+
+
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+def test_damaged_compiled_code_is_made_anew(package, suffix):
+    first = run(package, SMALL_SEARCH)
+    damaged = sorted(package.rglob(f"*.{suffix}"))
+    assert damaged
+    for number, path in enumerate(damaged):
+        whole = path.read_bytes()
+        path.write_bytes((whole[: len(whole) // 2], b"", b"garbage" * 50)[number % 3])
+    assert run(package, SMALL_SEARCH) == first
+    mended = {path: path.stat().st_mtime_ns for path in package.rglob("*.nbi")}
+    assert run(package, SMALL_SEARCH) == first
+    assert {path: path.stat().st_mtime_ns for path in package.rglob("*.nbi")} == mended
+
+
+def test_a_source_from_the_future_doesnt_make_it_compile_each_time(package):
+    os.utime(package / "uavlab" / "checks.py", (2e9 + 1e9, 2e9 + 1e9))
+    first = run(package, SMALL_SEARCH)
+    compiled = {path: path.stat().st_mtime_ns for path in package.rglob("*.nbi")}
+    assert run(package, SMALL_SEARCH) == first
+    assert {path: path.stat().st_mtime_ns for path in package.rglob("*.nbi")} == compiled
+
+
+def test_it_runs_uncompiled_for_a_debugger(package):
+    told = json.loads(run(package, SMALL_SEARCH, NUMBA_DISABLE_JIT="1"))
+    assert told["cost"] == pytest.approx(8 + 2 * 2**0.5)
+    assert told["warnings"] == []
+    assert not list(package.rglob("*.nbi"))
+
+
 def test_an_edit_in_another_file_is_not_hidden_by_the_cache(tmp_path):
     package = tmp_path / "uavlab"
     package.mkdir()

@@ -122,3 +122,12 @@ def test_an_error_is_the_functions_own_with_a_note_of_the_case(quiet, jobs):
 def test_a_number_of_jobs_that_makes_no_sense_is_refused(quiet, jobs):
     with pytest.raises(ValueError, match=f"jobs must be a number of processes, or −1 for one per core, got {jobs!r}"):
         sweep(pow, [{"base": 2, "exp": 3}], jobs=jobs, **quiet)
+
+
+def test_a_generator_that_cases_share_is_refused():
+    """Before, one process drew other numbers for each case, and two the same for all."""
+    rng = np.random.default_rng(0)
+    with pytest.raises(ValueError, match=r"cases 0 and 2 share rng, a random generator, .* rng\.spawn\(3\)"):
+        sweep(float, [{"rng": rng}, {"rng": 1}, {"rng": rng}], progress=False)
+    draws = sweep(lambda rng: rng.random(), [{"rng": one} for one in rng.spawn(3)], progress=False)
+    assert len(set(draws)) == 3

@@ -1,6 +1,6 @@
 """Checks of arguments that many functions share: each names the argument, its value and the range."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +35,19 @@ def number(name: str, value: npt.ArrayLike) -> None:
 def whole(name: str, value: int, least: int) -> None:
     if not (isinstance(value, int | np.integer) and value >= least):
         raise ValueError(f"{name} must be a whole number of at least {least}, got {value!r}")
+
+
+def generator(name: str, rng: np.random.Generator | int | Sequence[int]) -> np.random.Generator:
+    """The generator itself, or a new one from a seed; what gives other numbers each time is refused."""
+    if isinstance(rng, np.random.Generator):
+        return rng
+    seeds = rng if isinstance(rng, list | tuple) and rng else [rng]
+    if all(isinstance(seed, int | np.integer) and not isinstance(seed, bool) and seed >= 0 for seed in seeds):
+        return np.random.default_rng(rng)
+    raise ValueError(
+        f"{name} must be a numpy.random.Generator, or a seed (a whole number of at least 0, or a list of some), so "
+        f"that the result can be had again, got {rng!r:.60}"
+    )
 
 
 def within(name: str, value: npt.ArrayLike, low: float, high: float, unit: str) -> None:

@@ -10,15 +10,20 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
+from time import time as now
 from typing import Any, TypeVar
 
 import numba
+from numba.core import config
+from numba.core.caching import FunctionCache
 
 F = TypeVar("F", bound=Callable)
 
 
 def compiled(function: F) -> F:
     """Compile a function of numbers, arrays and named tuples with numba, cached on disk where that is possible."""
+    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # NUMBA_DISABLE_JIT=1, to step through with a debugger
+        return function
     try:
         dispatcher: Any = numba.njit(cache=True)(function)
     except RuntimeError:  # numba found no folder that it may write
@@ -26,7 +31,19 @@ def compiled(function: F) -> F:
         uncached: Any = numba.njit(function)
         return uncached
     discard_stale(Path(dispatcher.stats.cache_path))
+    dispatcher._cache = MendingCache(function)
     return dispatcher
+
+
+class MendingCache(FunctionCache):
+    """A cache on disk that is emptied where it can't be read, after a full disk or a killed process."""
+
+    def load_overload(self, signature: Any, target_context: Any) -> Any:
+        try:
+            return super().load_overload(signature, target_context)
+        except Exception:  # unpickling garbage raises anything
+            self.flush()
+            return None
 
 
 @cache
@@ -45,7 +62,8 @@ def discard_stale(folder: Path) -> None:
 
     numba looks only at the file of the function itself; an edit in another file that it calls would go unnoticed.
     """
-    newest = max(source.stat().st_mtime for source in Path(__file__).parent.rglob("*.py"))
+    changed = [source.stat().st_mtime for source in Path(__file__).parent.rglob("*.py")]
+    newest = max((moment for moment in changed if moment <= now()), default=0.0)  # a clock that ran ahead says nothing
     for index in folder.glob("*.nbi"):
         with suppress(FileNotFoundError):  # another process may drop it first
             if index.stat().st_mtime < newest:

@@ -9,6 +9,7 @@ from numbers import Integral
 from typing import Any
 
 import joblib
+import numpy as np
 from tqdm import tqdm
 
 
@@ -42,18 +43,31 @@ def sweep(
     Raises
     ------
     ValueError
-        If `jobs` is 0 or no whole number.
+        If `jobs` is 0 or no whole number, or cases share a random generator: what one of them draws would be missing
+        in the next on one core, and not on two.
     Exception
         What the function raises; a note says in which case.
     """
     if jobs is not None and (not isinstance(jobs, Integral) or jobs == 0):
         raise ValueError(f"jobs must be a number of processes, or −1 for one per core, got {jobs!r}")
     cases = list(cases)
+    refuse_shared_generators(cases)
     calls = (joblib.delayed(called)(function, dict(case)) for case in cases)
     backend, _ = joblib.parallel.get_active_backend()
     ordered = "generator" if backend.supports_return_generator else "list"  # Ray's, for one, gives all at the end
     results = joblib.Parallel(n_jobs=jobs, return_as=ordered)(calls)
     return list(tqdm(results, total=len(cases), unit=unit, disable=not progress))
+
+
+def refuse_shared_generators(cases: list[Mapping[str, Any]]) -> None:
+    owners: dict[int, int] = {}
+    for number, case in enumerate(cases):
+        for name, value in case.items():
+            if isinstance(value, np.random.Generator) and owners.setdefault(id(value), number) != number:
+                raise ValueError(
+                    f"cases {owners[id(value)]} and {number} share {name}, a random generator, so that results would "
+                    f"depend on where they run: give each a seed, or one of {name}.spawn({len(cases)})"
+                )
 
 
 def called(function: Callable[..., Any], case: dict[str, Any]) -> Any:

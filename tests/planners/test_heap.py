@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uavlab.planners.heap import open_list, pop, push
+from uavlab.planners.heap import OpenList, code_type, open_list, pop, push
 
 NODES = 12
 few_keys = st.sampled_from([0.0, 0.5, 1.0, 1.0 + 1e-12, 2.0, 3.0, np.inf])  # few, so that keys are often equal
@@ -75,3 +75,17 @@ def test_a_node_may_come_back_after_it_left():
     push(waiting, 0, 4.0)
     push(waiting, 1, 3.0)
     assert drain(waiting) == [1, 0]
+
+
+def test_codes_of_nodes_have_room():
+    """Before, node 2 159 000 000 came out as −2 135 967 296: nine states for each voxel of a large map."""
+    assert [code_type(nodes) for nodes in (9, 2**31 - 1, 2**31, 2_159_000_001)] == [
+        np.int32,
+        np.int32,
+        np.int64,
+        np.int64,
+    ]
+    waiting = OpenList(np.empty(11, np.int64), np.empty(11), np.zeros(10, np.int64), np.zeros(1, np.int64))
+    for node in (7, 3, 9):
+        push(waiting, node, 10.0 - node)
+    assert [pop(waiting) for _ in range(3)] == [9, 7, 3]

@@ -551,7 +551,7 @@ class City:
         """
         if count < 1:
             raise ValueError(f"count must be at least 1, got {count!r}")
-        rng = np.random.default_rng(rng)
+        rng = checks.generator("rng", rng)
         allowed = np.flatnonzero(~self.blocked(min_clearance))
         pairs: list[np.ndarray] = []
         for _ in range(1000 * count if len(allowed) else 0):

@@ -114,7 +114,7 @@ def fly(
     setup, grounded = setup_of(route, city, uav, disturbance, autopilot, time_step)
     if setup is None:
         return Flight("grounded", grounded, np.empty((0, len(COLUMNS))), np.inf, 0.0)
-    return flown(setup, np.random.default_rng(rng).spawn(number + 1)[number], every=1)
+    return flown(setup, checks.generator("rng", rng).spawn(number + 1)[number], every=1)
 
 
 def monte_carlo(
@@ -174,7 +174,7 @@ def monte_carlo(
             reason=grounded,
         )
     steps = max(round(every / time_step), 1)
-    generators = np.random.default_rng(rng).spawn(flights)
+    generators = checks.generator("rng", rng).spawn(flights)
     cases = [
         {"setup": setup, "generators": generators[first : first + BATCH], "every": steps}
         for first in range(0, flights, BATCH)

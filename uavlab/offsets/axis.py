@@ -63,7 +63,7 @@ class OffsetModel:
 
     def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
         """Independent offsets [m], (count,)."""
-        return np.random.default_rng(rng).normal(self.mean, self.sigma, count)
+        return checks.generator("rng", rng).normal(self.mean, self.sigma, count)
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ class SkewedOffset:
 
     def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
         """Independent offsets [m], (count,)."""
-        return self.offset_of(np.random.default_rng(rng).standard_normal(count))
+        return self.offset_of(checks.generator("rng", rng).standard_normal(count))
 
     def offset_of(self, gust: npt.ArrayLike) -> np.ndarray:
         """Offset [m] when the wind is `gust` standard deviations above its mean."""

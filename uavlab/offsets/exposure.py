@@ -154,7 +154,7 @@ def offset_paths(
         raise ValueError(
             f"step must be at least 0.0001/natural_frequency for its noise to be told from 0, got {step:g}"
         )
-    generator = np.random.default_rng(rng)
+    generator = checks.generator("rng", rng)
     if rough:
         transition, stationary = np.array([[np.exp(-turn / 2)]]), np.eye(1)
     else:

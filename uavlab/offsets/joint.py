@@ -122,7 +122,7 @@ class JointOffset:
 
     def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
         """Independent offsets (count, 2) [m]."""
-        return np.random.default_rng(rng).multivariate_normal(self.mean, self.covariance, count, method="cholesky")
+        return checks.generator("rng", rng).multivariate_normal(self.mean, self.covariance, count, method="cholesky")
 
 
 @dataclass(frozen=True, eq=False)

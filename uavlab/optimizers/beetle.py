@@ -78,7 +78,7 @@ def bas(
         If bounds are reversed or not finite, the budget is too small, the start lies outside of the bounds, or
         another argument is out of its range.
     """
-    rng = np.random.default_rng(rng)
+    rng = checks.generator("rng", rng)
     if decay is None and not greedy:
         raise ValueError("decay must be a number unless greedy: a beetle that walks either way has no gain to follow")
     antennae = antennae_of(bounds, antenna, decay, block, as_printed)

@@ -80,7 +80,7 @@ def pso(
         If bounds are reversed or not finite, the budget is below one swarm, a start lies outside of the bounds, or
         another argument is out of its range.
     """
-    rng = np.random.default_rng(rng)
+    rng = checks.generator("rng", rng)
     settings = swarm_settings(inertia, c1, c2, v_max, as_printed)
     low, high = checked_bounds(bounds)
     checks.whole("swarm", swarm, least=1)

@@ -71,7 +71,7 @@ def pso_bas(
         If bounds are reversed or not finite, the budget is below one swarm, a start lies outside of the bounds, or
         another argument is out of its range.
     """
-    rng = np.random.default_rng(rng)
+    rng = checks.generator("rng", rng)
     settings = swarm_settings(inertia, c1, c2, v_max, as_printed)
     if antennae not in ("best", "current"):
         raise ValueError(f"antennae must be 'best' or 'current', got {antennae!r}")

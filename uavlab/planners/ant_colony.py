@@ -139,7 +139,7 @@ def ant_colony(
         If start or goal can't be flown from or to, or an argument is out of its range.
     """
     began = time.perf_counter()
-    rng = np.random.default_rng(rng)
+    rng = checks.generator("rng", rng)
     habits = PRINTED if as_printed else checked_habits(alpha, beta, gamma, evaporation, deposit, pheromone)
     checks.whole("ants", ants, least=1)
     checks.whole("splits", splits, least=0)

@@ -21,17 +21,21 @@ LARGE = 32 << 20
 class OpenList(NamedTuple):
     """Nodes that wait for expansion, ordered by key."""
 
-    node: np.ndarray  # (N + 1,) int32: which node waits in each slot, from 1
+    node: np.ndarray  # (N + 1,) int32, or int64 for more than that can count: which node waits in each slot, from 1
     key: np.ndarray  # (N + 1,) float: its key
-    slot: np.ndarray  # (N,) int32: where a node waits; 0: it doesn't
+    slot: np.ndarray  # (N,) of the same type: where a node waits; 0: it doesn't
     size: np.ndarray  # (1,) int: how many wait
 
 
 def open_list(nodes: int) -> OpenList:
     """An empty list with room for nodes 0 … nodes − 1."""
-    return OpenList(
-        np.empty(nodes + 1, np.int32), np.empty(nodes + 1), room(np.zeros, nodes, np.int32), np.zeros(1, np.int64)
-    )
+    code = code_type(nodes)
+    return OpenList(np.empty(nodes + 1, code), np.empty(nodes + 1), room(np.zeros, nodes, code), np.zeros(1, np.int64))
+
+
+def code_type(nodes: int) -> type:
+    """The smallest type that can count so many nodes."""
+    return np.int32 if nodes <= np.iinfo(np.int32).max else np.int64
 
 
 def room(make: Callable, count: int, dtype: type) -> np.ndarray:

@@ -132,7 +132,7 @@ def waypoint_swarm(
         route doesn't lead from start to goal, or an argument is out of its range.
     """
     began = time.perf_counter()
-    rng = np.random.default_rng(rng)
+    rng = checks.generator("rng", rng)
     for name, value, known in (
         ("optimizer", optimizer, OPTIMIZERS),
         ("encoding", encoding, ("points", "planes")),
@@ -231,7 +231,7 @@ def refine(
         If the route doesn't arrive, its ends can't be flown from or to, or an argument is out of its range.
     """
     began = time.perf_counter()
-    rng = np.random.default_rng(rng)
+    rng = checks.generator("rng", rng)
     checks.instance("route", route, Route)
     if not route.reached or len(route.points) < 2:
         raise ValueError(f"route must lead from a start to a goal, it doesn't: {route.reason or 'no leg'}")

@@ -131,7 +131,7 @@ def synthetic_weather(
     checks.whole("count", count, 0)
     checks.positive("wind_scale", wind_scale)
     checks.positive("wind_shape", wind_shape)
-    rng = np.random.default_rng(rng)
+    rng = checks.generator("rng", rng)
     day, hour = rng.uniform(0, 365, count), rng.uniform(0, 24, count)
     season, warmth = np.cos(2 * np.pi * (day - 200) / 365), np.cos(2 * np.pi * (hour - 15) / 24)
     latitude, declination = np.radians(40.0), np.radians(23.44) * np.cos(2 * np.pi * (day - 172) / 365)
@@ -187,7 +187,7 @@ def make_dataset(
     checks.whole("train_count", train_count, 1)
     if train_count >= count:
         raise ValueError(f"train_count must be from 1 to count - 1 = {count - 1}, got {train_count!r}")
-    rng = np.random.default_rng(rng)
+    rng = checks.generator("rng", rng)
     if setting.real_weather:
         hours = greensboro_weather()
         if count > len(hours):

@@ -136,7 +136,7 @@ def simulate_offsets(
     """
     checks.not_negative("noise", noise)
     median = median_offsets(weather, uav, **site)
-    return median * np.exp(noise * np.random.default_rng(rng).standard_normal(len(median)))
+    return median * np.exp(noise * checks.generator("rng", rng).standard_normal(len(median)))
 
 
 def offset_class(offsets: npt.ArrayLike, class_count: int = 6) -> np.ndarray:

@@ -65,7 +65,7 @@ def random_campus(seed: int | np.random.Generator, cell: float = 5.0) -> RiskMap
     RiskMap
         30 000 people per km² on average; plan from and to `CAMPUS_FLIGHT`.
     """
-    rng = np.random.default_rng(seed)
+    rng = checks.generator("seed", seed)
     zones = [zone((0, 150), (0, 150), *KINDS["yard"], "ground")]
     for west in (0.0, *ROADS):
         for south in (0.0, *ROADS):

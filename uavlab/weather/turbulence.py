@@ -108,7 +108,7 @@ def dryden_gusts(
     air_speed: float,
     altitude: float,
     wind_at_6m: float,
-    rng: np.random.Generator | int | None = None,
+    rng: np.random.Generator | int,
 ) -> np.ndarray:
     """Gusts that a UAV meets, to be added to the mean wind.
 
@@ -129,7 +129,7 @@ def dryden_gusts(
         Height above the ground [m], 3.048 to 304.8.
     wind_at_6m : float
         Mean wind at 20 ft (6.1 m) above the ground [m/s], at least 0.
-    rng : numpy.random.Generator or int, optional
+    rng : numpy.random.Generator or int
         Where the noise comes from; a seed makes it repeatable.
 
     Returns
@@ -147,7 +147,7 @@ def dryden_gusts(
     if time_step > duration:
         raise ValueError(f"time_step {time_step:g} s is longer than the duration of {duration:g} s")
     scales, deviations = time_scales(air_speed, altitude, wind_at_6m)
-    noise = np.random.default_rng(rng).standard_normal((3, round(duration / time_step), 2))
+    noise = checks.generator("rng", rng).standard_normal((3, round(duration / time_step), 2))
     gusts = [
         two_lags(normal, time_step / scale) @ output
         for normal, scale, output in zip(noise, scales, OUTPUT, strict=True)
