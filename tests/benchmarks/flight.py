@@ -205,7 +205,7 @@ def point_mass(
     setup, _ = setup_of(route, empty_sky(), uav, Wind(gusts="none"), autopilot, TIME_STEP)
     assert setup is not None
     state, rng, log = start_of(setup), np.random.default_rng(0), np.empty((2, 12))
-    model = setup.model(Wind(tuple(sky.mean), "none"), autopilot.controller)
+    model = setup.model(Wind(tuple(sky.mean), "none"), autopilot.controller, setup.path)
     flight = []
     for velocity in sky.air:
         model.parts[1].mean[:] = velocity  # the air moves so in this step; the trim stays that of the mean wind
