@@ -749,3 +749,22 @@ def test_the_point_suggested_instead_of_one_in_a_building_is_flyable():
     point = [float(part) for part in str(refused.value).rsplit("(", 1)[1].rstrip(")").split(",")]
     assert campus.flyable[tuple(campus.city.cell_of(point))]
     assert least_risk(campus, point, CAMPUS_FLIGHT[1]).reached
+
+
+@pytest.mark.parametrize("cell", [0.1, 0.3, 1.0])
+@pytest.mark.parametrize("corner", [(0, 0, 0), (5e5, 5e6, 0)])
+def test_the_length_of_the_shortest_route_is_enough_wherever_the_map_lies(cell, corner):
+    """Before, on 9 of 20 such maps with coordinates of a million metres it wasn't, as these are rounded."""
+    found = 0
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        city = City(rng.random((12, 12, 6)) < 0.1, cell=cell, origin=corner)
+        risk_map = RiskMap(city, rng.uniform(0, 0.05, (12, 12)), 0.2, safe_height=0.0)
+        ((start, goal),) = city.random_pairs(1, seed, apart=5 * cell)
+        shortest = least_risk(risk_map, start, goal, risk=0.0, length=1.0)
+        if shortest.reached:
+            least = least_risk(risk_map, start, goal, max_length=shortest.length)
+            assert least.reached
+            assert least.length <= shortest.length * (1 + 1e-7)
+            found += 1
+    assert found > 6

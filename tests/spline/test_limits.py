@@ -284,6 +284,16 @@ def test_what_can_t_be_held_in_the_wind_flies_at_no_speed():
     assert greatest_speed(circle(40.0), LIGHT_QUADROTOR, (17.0, 0)) > 0
 
 
+def test_in_a_strong_tail_wind_the_speeds_that_work_begin_above_0():
+    """Before: 0, "when there is none"; hovering in it takes more thrust than there is, flying with it hardly any."""
+    slow = replace(LIGHT_QUADROTOR.loaded(0.83), cruise_speed=5.0, top_speed=11.9)
+    speed, wind = greatest_speed(straight(), slow, (38.9, 0)), (38.9, 0)
+    assert speed == pytest.approx(50.8, abs=0.1)
+    assert feasibility(straight(), slow, OPEN, speed=speed, wind=wind, bank=np.pi / 4).feasible
+    assert not feasibility(straight(), slow, OPEN, speed=speed + 0.01, wind=wind, bank=np.pi / 4).feasible
+    assert not feasibility(straight(), slow, OPEN, speed=20.0, wind=wind).feasible
+
+
 def test_the_report_is_a_table_to_print():
     report = feasibility(circle(5.0), RISK_QUADROTOR, OPEN)
     lines = str(report).splitlines()

@@ -121,7 +121,9 @@ def least_risk(
     if max_length is None:
         nodes, cost, expanded = solve(query, heuristic == "backward")
     else:
-        routes, expanded = constrained(query, city_lengths(query), np.array([max_length / risk_map.city.cell]))
+        rounding = 4 * np.finfo(float).eps * np.abs(risk_map.city.bounds).max() / risk_map.city.cell  # of each move
+        longest = max_length / risk_map.city.cell * (1 + rounding)
+        routes, expanded = constrained(query, city_lengths(query), np.array([longest]))
         nodes, cost = routes[0] if routes else (np.empty(0, np.int64), np.inf)
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
     name = "least risk" if length == threat == 0 else "shortest" if risk == threat == 0 else "least cost"
