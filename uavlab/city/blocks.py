@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from uavlab import checks
-from uavlab.city.buildings import polygons_in
+from uavlab.city.buildings import THINNEST, polygons_in
 from uavlab.city.footprints import Footprint
 from uavlab.city.heights import Heights
 from uavlab.city.place import Place, System, check_extent, place_at_corner
@@ -21,9 +21,6 @@ SAMPLES = 2.0
 
 MOST_SAMPLES = 100
 """Of those, in each direction; under larger footprints they are farther apart."""
-
-THINNEST = 1e-4
-"""Twice the area of a polygon by half of its length [m]: what is thinner is rounding, and spans no volume."""
 
 STEEP = 10.0
 """A building whose foot is farther above the ground [m] hardly stands on it."""

@@ -40,9 +40,14 @@ def bounds_of(city: City, min_clearance: float = 0.0, min_height: float = 0.0, m
     )  # fmt: skip
 
 
-def slack_of(city: City) -> float:
+def rounding_of(city: City) -> float:
     """By how much positions [cells] are rounded: far from x = y = z = 0 a float has few digits left for a cell."""
-    return ROUNDING + 4 * np.finfo(float).eps * float(np.abs(city.bounds).max()) / city.cell
+    return 4 * np.finfo(float).eps * float(np.abs(city.bounds).max()) / city.cell
+
+
+def slack_of(city: City) -> float:
+    """What is nearer than this [cells] touches, with positions as they are rounded."""
+    return ROUNDING + rounding_of(city)
 
 
 def height_limits(city: City, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -20,6 +20,9 @@ from uavlab import checks
 FACE_TOLERANCE = 1e-9
 """How far outside a face [m] a point still counts as inside: rounding, not thickness."""
 
+THINNEST = 1e-4
+"""Twice the area of a polygon by half of its length [m]: what is thinner is rounding, and spans no volume."""
+
 
 class Hull(NamedTuple):
     """The surface of a convex piece, as Qhull gives it."""
@@ -233,7 +236,7 @@ def convex_parts(polygon: shapely.Polygon) -> list[np.ndarray]:
     if len(corners) == 4 or is_convex(polygon):
         return [corners[:-1]]
     triangles = shapely.constrained_delaunay_triangles(polygon).geoms
-    return [shapely.get_coordinates(each)[:3] for each in triangles if 2 * each.area > 1e-4 * each.length / 2]
+    return [shapely.get_coordinates(each)[:3] for each in triangles if 2 * each.area > THINNEST * each.length / 2]
 
 
 def polygons_in(geometry: shapely.Geometry) -> list[shapely.Polygon]:

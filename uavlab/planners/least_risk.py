@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.bounds import rounding_of
 from uavlab.city.model import check_heights
 from uavlab.compiled import compiled
 from uavlab.planners.astar import ROUNDING, TIE_BREAK
@@ -121,8 +122,7 @@ def least_risk(
     if max_length is None:
         nodes, cost, expanded = solve(query, heuristic == "backward")
     else:
-        rounding = 4 * np.finfo(float).eps * np.abs(risk_map.city.bounds).max() / risk_map.city.cell  # of each move
-        longest = max_length / risk_map.city.cell * (1 + rounding)
+        longest = max_length / risk_map.city.cell * (1 + rounding_of(risk_map.city))  # of each move
         routes, expanded = constrained(query, city_lengths(query), np.array([longest]))
         nodes, cost = routes[0] if routes else (np.empty(0, np.int64), np.inf)
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
