@@ -241,10 +241,13 @@ class Controller(NamedTuple):
     """Of the cruise speed."""
     natural_frequency: float
     """ω_n of the position control [rad/s]: offsets of white gusts shrink as ω_n^(−3/2)."""
+    tilt_share: float = 1.0
+    """Of the greatest tilt: REPARE 2.1 reduces the pitch angle, too."""
 
 
 BASIC = Controller("basic", 1.0, 1.0)
-ADVANCED = Controller("advanced", 0.5, 1.6)
+ADVANCED = Controller("advanced", 0.5, 1.6, 2 / 3)
+"""REPARE gives no numbers; half the speed, a tighter control and two thirds of the tilt are ours."""
 
 
 def basic_offset(controller: Controller) -> float:

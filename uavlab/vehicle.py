@@ -1,10 +1,12 @@
-"""The vehicle: what it weighs, how hard its rotors pull, and how much of that is left against the wind.
+"""The vehicle: what it weighs, how hard its rotors pull, how much of that is left against the wind, and how long.
 
 A multirotor in hover holds its weight with the vertical part of its thrust. What remains sideways, the horizontal
-reserve, is all it has against a gust: a heavy load takes it away twice, by its weight and by leaving less to tilt.
+reserve, is all it has against a gust: a heavy load takes it away twice, by its weight and by leaving less to tilt. The
+presets stand beside the data sheets of real aircraft.
 """
 
 from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +15,18 @@ from uavlab import checks
 
 GRAVITY = 9.81
 """Acceleration of free fall [m/s²]."""
+
+STANDARD_AIR = 1.225
+"""Density of dry air at 15 °C and 1013.25 hPa [kg/m³]."""
+
+WATT_HOUR = 3600.0
+"""[J]"""
+
+INDUCED = 1.15
+"""Of the ideal power what rotors truly spend on the induced flow, as it isn't even (Leishman 2006, 2.8)."""
+
+UNLIMITED = ("climb_speed", "sink_speed", "battery")
+"""What may be infinite."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +40,7 @@ class UAV:
     thrust : float
         Greatest total thrust of the rotors [N]; must exceed the weight.
     drag_area : float
-        Drag coefficient times frontal area, C·S [m²]; 0.02 to 0.1 for small quadrotors.
+        Drag coefficient times frontal area in flight, C·S [m²]; 0.02 to 0.1 for small quadrotors.
     rain_area : float
         Area that rain falls on, seen from above [m²].
     diameter : float
@@ -35,8 +49,22 @@ class UAV:
         Airspeed on missions and at most [m/s].
     max_tilt : float
         Greatest tilt of the rotor plane [rad].
+    climb_speed, sink_speed : float
+        Greatest vertical speeds, up and down, REPARE's "maximum ascent speed" (2.1.2) [m/s]; infinite where nothing but
+        the top speed limits them.
     rotor_area : float
         Area of all rotor discs together [m²]; four of 25 cm across have 0.2.
+    figure_of_merit : float
+        Ideal over true power of the rotors in hover, above 0, below 0.87; 0.5 to 0.7 for small ones (Leishman,
+        Principles of Helicopter Aerodynamics, 2006, 2.8).
+    drive_efficiency : float
+        Share of the battery's power that reaches the rotors through motors and their control, above 0, at most 1.
+    battery : float
+        Energy when full [J]; 1 Wh is 3600 J. Infinite where it isn't known.
+    reserve : float
+        Share of it that a flight leaves in the battery, at least 0, below 1.
+    fall_drag_area : float, optional
+        C·A of the wreck in free fall [m²]; by default `drag_area`.
     payload : float
         Load carried [kg].
     name : str
@@ -55,17 +83,34 @@ class UAV:
     cruise_speed: float
     top_speed: float
     max_tilt: float = np.radians(35.0)
+    climb_speed: float = np.inf
+    sink_speed: float = np.inf
     rotor_area: float = 0.2
+    figure_of_merit: float = 0.6
+    drive_efficiency: float = 0.75
+    battery: float = np.inf
+    reserve: float = 0.2
+    fall_drag_area: float | None = None
     payload: float = 0.0
     name: str = "UAV"
 
     def __post_init__(self) -> None:
         for item in fields(self):
-            if item.name == "name":
+            value = getattr(self, item.name)
+            unlimited = item.name in UNLIMITED and np.ndim(value) == 0 and value == np.inf
+            if item.name == "name" or unlimited or (item.name == "fall_drag_area" and value is None):
                 continue
-            checks.number(item.name, getattr(self, item.name))
-            check = checks.not_negative if item.name == "payload" else checks.positive
-            check(item.name, getattr(self, item.name))
+            check = checks.not_negative_number if item.name in ("payload", "reserve") else checks.positive_number
+            check(item.name, value)
+        if self.figure_of_merit >= 1 / INDUCED:
+            raise ValueError(
+                f"figure_of_merit must be below {1 / INDUCED:.2f}, what losses of the induced flow leave, "
+                f"got {self.figure_of_merit:g}"
+            )
+        if self.drive_efficiency > 1:
+            raise ValueError(f"drive_efficiency is a share and must be at most 1, got {self.drive_efficiency:g}")
+        if self.reserve >= 1:
+            raise ValueError(f"reserve is a share of the battery and must be below 1, got {self.reserve:g}")
         if self.max_tilt >= np.pi / 2:
             raise ValueError(
                 f"max_tilt must be below π/2 in radians, got {self.max_tilt:g}; convert with numpy.radians"
@@ -86,6 +131,28 @@ class UAV:
     def loaded(self, payload: float) -> "UAV":
         """The same vehicle with another payload [kg]; a ValueError if the rotors can't lift it."""
         return replace(self, payload=payload)
+
+    def hover_power(self, air_density: float = STANDARD_AIR) -> float:
+        """Power from the battery in hover, T^1.5/√(2 ρ A) over figure of merit and drive efficiency [W].
+
+        Parameters
+        ----------
+        air_density : float
+            ρ [kg/m³], above 0.
+        """
+        checks.positive_number("air_density", air_density)
+        ideal = self.weight**1.5 / np.sqrt(2 * air_density * self.rotor_area)
+        return float(ideal / (self.figure_of_merit * self.drive_efficiency))
+
+    @property
+    def usable_energy(self) -> float:
+        """What flights may take from a full battery [J]; infinite where its energy isn't known."""
+        return (1 - self.reserve) * self.battery
+
+    @property
+    def endurance(self) -> float:
+        """How long it hovers in standard air until only the reserve is left [s]."""
+        return self.usable_energy / self.hover_power()
 
     def horizontal_reserve(self, downward_force: npt.ArrayLike = 0.0) -> np.ndarray:
         """Force left against the wind while hovering.
@@ -112,19 +179,54 @@ class UAV:
         return np.minimum(np.sqrt(np.maximum(self.thrust**2 - down**2, 0.0)), down * np.tan(self.max_tilt))
 
 
+class DataSheet(NamedTuple):
+    """What a maker says of an aircraft."""
+
+    name: str
+    mass: float
+    """With its battery [kg]."""
+    wind: float
+    """Strongest wind to fly in [m/s]."""
+    top_speed: float
+    climb_speed: float
+    sink_speed: float
+    """[m/s]"""
+    endurance: float
+    """Hovering, with no load [s]."""
+    battery: float
+    """[J]"""
+    rotor_diameter: float
+    """Of each of its four rotors [m]."""
+
+
+DATA_SHEETS = (
+    DataSheet("DJI Phantom 4", 1.38, 10.0, 20.0, 6.0, 4.0, 28 * 60, 81.3 * WATT_HOUR, 9.4 * 0.0254),
+    DataSheet("DJI Matrice 100, TB47D battery", 2.355, 10.0, 22.0, 5.0, 4.0, 22 * 60, 99.9 * WATT_HOUR, 13.0 * 0.0254),
+    DataSheet("DJI Mavic 2 Pro", 0.907, 10.5, 20.0, 5.0, 3.0, 29 * 60, 59.29 * WATT_HOUR, 8.7 * 0.0254),
+)
+"""Real quadrotors after the makers' data sheets of 2015 to 2018, beside which the presets' limits stand.
+
+The Phantom's 28 minutes are its longest flight, not hovering; 16 m/s is the speed of its second fastest mode."""
+
 RISK_QUADROTOR = UAV(
     mass=1.38,
     thrust=28.0,
-    drag_area=0.3 * 0.0188,
+    drag_area=0.05,
     rain_area=np.pi * 0.2**2,
     diameter=0.4,
     cruise_speed=16.0,
-    top_speed=20.0,
+    top_speed=16.0,
+    climb_speed=6.0,
+    sink_speed=4.0,
     rotor_area=0.18,
+    battery=81.3 * WATT_HOUR,
+    fall_drag_area=0.3 * 0.0188,
     name="1.38 kg quadrotor of PSO-BAS Table 2",
 )
-"""Mass, radius 0.2 m, speed 16 m/s, C = 0.3 and A = 0.0188 m² from PSO-BAS Table 2, where C·A is that of the wreck
-in free fall; thrust about twice the weight, the top speed and rotors of 24 cm are ours, usual for the class."""
+"""From PSO-BAS Table 2 the mass, a radius of 0.2 m, v_max = 16 m/s and, for the wreck in free fall, C = 0.3 and
+A = 0.0188 m². Mass and speed are those of a DJI Phantom 4, from whose data sheet are the vertical speeds, the battery
+and rotors of 24 cm. Thrust, about twice the weight, and C·S in flight, with which 16 m/s need a tilt of 30°, are ours.
+"""
 
 LIGHT_QUADROTOR = UAV(
     mass=1.5,
@@ -135,7 +237,11 @@ LIGHT_QUADROTOR = UAV(
     cruise_speed=5.0,
     top_speed=18.0,
     max_tilt=np.radians(60.0),
+    climb_speed=5.0,
+    sink_speed=4.0,
+    battery=100.0 * WATT_HOUR,
     name="light quadrotor for REPARE's cases",
 )
 """REPARE gives no vehicle. With these values a payload of 0, 0.25, 0.6 or 1 kg and a wind of 1.5, 6, 7.5 or 9 m/s give
-the distances of its Table 4; a diameter of 1 m is what its 3.5/4.5/5.5 m leave for rings of 3/4/5 m."""
+the distances of its Table 4; a diameter of 1 m is what its 3.5/4.5/5.5 m leave for rings of 3/4/5 m. Vertical speeds
+and battery are usual for the class (DJI Matrice 100)."""

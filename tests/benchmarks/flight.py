@@ -35,7 +35,7 @@ SPEED = 5.0
 
 ENDS = np.array([[87.5, 28.5, 57.5], [74.5, 86.5, 44.5]])
 
-STATE_GPS = Gps(rate=1 / TIME_STEP, position=0.0, velocity=0.0)
+STATE_GPS = PERFECT_GPS._replace(rate=1 / TIME_STEP)
 """The state itself, each step."""
 
 RATE = 100
@@ -169,12 +169,13 @@ def reference_of(route: Route | Curve, uav: UAV) -> Reference:
     """What uavlab's autopilot follows: its own steps, and its own way to look ahead for the acceleration."""
     setup, _ = setup_of(route, empty_sky(), uav, Wind(gusts="none"), Autopilot(), TIME_STEP)
     assert setup is not None
-    state, rows = start_of(setup), []
+    path, rows = setup.path, []
+    state = start_of(path.points[0])
     velocity, ahead, back = np.empty(3), np.empty(3), np.empty(3)
-    while state.way[0] < setup.path.distance[-1]:
-        speed = advance(setup.path, state, TIME_STEP if rows else 0.0, velocity)
-        velocity_at(setup.path, state, speed * PREVIEW, ahead)
-        velocity_at(setup.path, state, -speed * PREVIEW, back)
+    while state.way[0] < path.distance[-1]:
+        speed = advance(path, state, TIME_STEP if rows else 0.0, velocity)
+        velocity_at(path, state, speed * PREVIEW, ahead)
+        velocity_at(path, state, -speed * PREVIEW, back)
         rows.append((state.target.copy(), velocity.copy(), (ahead - back) / (2 * PREVIEW)))
     return Reference(*np.array(rows).swapaxes(0, 1))
 
@@ -204,13 +205,14 @@ def point_mass(
     autopilot = Autopilot(Controller("", 1.0, omega), trimmed=trimmed, gps=gps)
     setup, _ = setup_of(route, empty_sky(), uav, Wind(gusts="none"), autopilot, TIME_STEP)
     assert setup is not None
-    state, rng, log = start_of(setup), np.random.default_rng(0), np.empty((2, 12))
-    model = setup.model(Wind(tuple(sky.mean), "none"), autopilot.controller, setup.path)
+    path, rng, log = setup.path, np.random.default_rng(0), np.empty((2, 12))
+    state = start_of(path.points[0])
+    model = setup.model(Wind(tuple(sky.mean), "none"), autopilot.controller, path)
     flight = []
     for velocity in sky.air:
         model.parts[1].mean[:] = velocity  # the air moves so in this step; the trim stays that of the mean wind
         state.counts[1] = 0
-        model.run(setup.path, setup.space, state, TIME_STEP, 1, 1, rng, log)
+        model.run(path, setup.space, state, TIME_STEP, 1, 1, rng, log)
         flight.append(log[0, 1:4].copy())
     return np.array(flight)
 

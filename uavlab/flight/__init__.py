@@ -7,13 +7,14 @@ clearance, time, energy. A monitor may change how it is flown while the weather 
 
 from uavlab.flight.autopilot import GPS, PERFECT_GPS, Autopilot, Gps
 from uavlab.flight.disturbance import OffsetProcess, Wind, gust_spectrum, offset_sigma
-from uavlab.flight.results import Flight, Flights, Rate, crash_rate
+from uavlab.flight.results import Energy, Flight, Flights, Rate, crash_rate
 from uavlab.flight.simulation import fly, monte_carlo
 
 __all__ = [
     "GPS",
     "PERFECT_GPS",
     "Autopilot",
+    "Energy",
     "Flight",
     "Flights",
     "Gps",

@@ -10,18 +10,27 @@ STRATEGIES = ("adaptive", "grounded", "fixed")
 
 
 class Gps(NamedTuple):
-    """What the autopilot knows of where it is; between fixes it reckons with the last speed."""
+    """What the autopilot knows of where it is; between fixes it goes on with the last speed.
+
+    Errors of the position last for many minutes, and no control can see them: a first-order Gauss-Markov process,
+    R(t) = σ² exp(−|t|/τ). At the start the autopilot knows where it stands, and the error begins at 0; after a minute
+    its σ is 1.5 m.
+    """
 
     rate: float = 10.0
-    """[Hz]"""
-    position: float = 0.5
-    """σ of a fix on each axis [m]."""
-    velocity: float = 0.1
-    """σ of its speed on each axis [m/s]."""
+    """Fixes per second [Hz]; RISK-ACO section 4 flies with 10."""
+    drift: float = 4.7
+    """σ of its position, east and north, in the long run [m] (Beard and McLain, Small Unmanned Aircraft, 2012, 7.5)."""
+    vertical_drift: float = 1.5
+    """And up [m]. Height comes from a barometer: makers say ±0.5 m of hovering up and down, ±1.5 m level."""
+    correlation: float = 1100.0
+    """τ of the drift [s] (ibid.)."""
+    velocity: float = 0.05
+    """σ of its speed on each axis, anew at each fix [m/s] (ibid.)."""
 
 
 GPS = Gps()
-PERFECT_GPS = Gps(position=0.0, velocity=0.0)
+PERFECT_GPS = Gps(drift=0.0, vertical_drift=0.0, velocity=0.0)
 
 
 @dataclass(frozen=True)
@@ -43,7 +52,9 @@ class Autopilot:
         What becomes of the monitor's advice: its controller is taken; the UAV lands at once when it would change to the
         advanced one (one that begins with it never asks for that); nothing, as if there were no monitor.
     acceptance_radius : float
-        In a wind it has arrived when it is so near to the goal [m].
+        In a wind it has arrived when it is so near to the goal, as GPS has it [m].
+    heeds_limits : bool
+        Whether it stays on the ground in a wind for which `grounded_by` says so. If not, it flies to see what happens.
     interval : float
         How often the monitor, and a disturbance that changes, are looked at [s].
 
@@ -60,16 +71,20 @@ class Autopilot:
     monitor: Monitor | None = None
     strategy: str = "adaptive"
     acceptance_radius: float = 2.0
+    heeds_limits: bool = True
     interval: float = 0.5
 
     def __post_init__(self) -> None:
-        for name in ("speed_share", "natural_frequency"):
+        for name in ("speed_share", "natural_frequency", "tilt_share"):
             checks.positive_number(f"controller.{name}", getattr(self.controller, name))
+        if self.controller.tilt_share > 1:
+            raise ValueError(f"controller.tilt_share must be at most 1, got {self.controller.tilt_share:g}")
         if self.speed is not None:
             checks.positive_number("speed", self.speed)
-        checks.positive_number("gps.rate", self.gps.rate)
-        checks.not_negative_number("gps.position", self.gps.position)
-        checks.not_negative_number("gps.velocity", self.gps.velocity)
+        for name in ("rate", "correlation"):
+            checks.positive_number(f"gps.{name}", getattr(self.gps, name))
+        for name in ("drift", "vertical_drift", "velocity"):
+            checks.not_negative_number(f"gps.{name}", getattr(self.gps, name))
         checks.one_of("strategy", self.strategy, STRATEGIES)
         checks.positive_number("acceptance_radius", self.acceptance_radius)
         checks.positive_number("interval", self.interval)

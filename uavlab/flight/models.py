@@ -9,6 +9,7 @@ from uavlab.flight.autopilot import Autopilot
 from uavlab.flight.disturbance import GUSTS, OffsetProcess, Wind, gust_deviations
 from uavlab.flight.motion import Air, Body, Spring, State, drift_on, fly_on
 from uavlab.flight.path import Path
+from uavlab.power import profile_share
 from uavlab.resilience import Controller
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import dryden_parameters, rain_force
@@ -50,19 +51,24 @@ def model_of(
         spring = Spring(np.array(now.mean), sigma, keep, enter, controller.natural_frequency, controller.speed_share)
         return Model(drift_on, (spring,), controller.speed_share)
     gps = autopilot.gps
+    keep = float(np.exp(-1 / (gps.rate * gps.correlation)))
     body = Body(
         mass=uav.weight / GRAVITY,
         thrust=uav.thrust,
         drag=0.5 * now.air_density * uav.drag_area,
         tan_tilt=float(np.tan(uav.max_tilt)),
         rain=float(rain_force(now.rain_mm_per_h, uav.rain_area)),
-        disc=float(np.sqrt(2 * now.air_density * uav.rotor_area)),
+        disc=2 * now.air_density * uav.rotor_area,
+        profile=profile_share(uav),
+        efficiency=uav.drive_efficiency,
+        charge=uav.usable_energy,
         trim=np.array(now.mean) if autopilot.trimmed else np.zeros(3),
         omega=controller.natural_frequency,
         pace=controller.speed_share,
-        gps_position=gps.position,
+        gps_fixes=gps.rate * time_step,
+        gps_keep=keep,
+        gps_enter=np.sqrt(1 - keep**2) * np.array([gps.drift, gps.drift, gps.vertical_drift]),
         gps_velocity=gps.velocity,
-        gps_every=max(round(1 / (gps.rate * time_step)), 1),
     )
     return Model(
         fly_on, (body, air_of(now, passing_speed(now, path, controller), altitude, time_step)), controller.speed_share

@@ -8,6 +8,7 @@ import numpy as np
 from uavlab.city.segments import Runs, segment_clearance
 from uavlab.city.voxels import distance_to_obstacle
 from uavlab.compiled import compiled
+from uavlab.power import rotor_power
 from uavlab.vehicle import GRAVITY
 
 PREVIEW = 0.25
@@ -22,6 +23,9 @@ LOST = 30.0
 HALVINGS = 24
 """To find where on a step a body first touches something."""
 
+MORE = 1 + 1e-12
+"""A fix that is due at a step isn't a step late for rounding."""
+
 LESS = 1 - 1e-12
 """What is nearer than a distance is less than it, whatever the rounding."""
 
@@ -32,7 +36,12 @@ COLUMNS = ("time", "x", "y", "z", "x_ref", "y_ref", "z_ref", "along", "across", 
 """What is logged: position and reference [m], offset in the route's frame [m], thrust [N], speed over ground [m/s]."""
 
 NONE, GAUSSIAN, OU, DRYDEN = range(4)
-FLYING, ARRIVED, CRASHED, BLOWN_BACK = range(4)
+FLYING, ARRIVED, CRASHED, BLOWN_BACK, BATTERY_EMPTY = range(5)
+
+LEAST, NOW, BATTERY, INDUCED, PROFILE, DRAG, WIND, RAIN, BRAKED = range(9)
+"""What a flight sums up: least and present distance to obstacles [m], energy from the battery, and where that went [J].
+
+See `uavlab.flight.Energy`."""
 
 
 class Body(NamedTuple):
@@ -43,13 +52,17 @@ class Body(NamedTuple):
     drag: float  # ½ ρ C S [kg/m]
     tan_tilt: float
     rain: float  # [N]
-    disc: float  # √(2 ρ A) of its rotors: an ideal one hovers with T^1.5/√(2 ρ A)
+    disc: float  # 2 ρ A of its rotors [kg/m]
+    profile: float  # drag of the blades in hover, over the ideal power
+    efficiency: float  # of motors and their control
+    charge: float  # energy that the flight may take from the battery [J]
     trim: np.ndarray  # (3,) the mean wind that the autopilot reckons with [m/s]
     omega: float  # ω_n of its position control [rad/s]
     pace: float  # share of the planned speed
-    gps_position: float  # σ of a fix [m]
+    gps_fixes: float  # per step
+    gps_keep: float  # share of the error that is left at the next fix
+    gps_enter: np.ndarray  # (3,) σ of what is new in it [m]
     gps_velocity: float  # [m/s]
-    gps_every: int  # steps from fix to fix
 
 
 class Air(NamedTuple):
@@ -99,17 +112,18 @@ class State(NamedTuple):
     seen_velocity: np.ndarray
     lags: np.ndarray  # (3, 2) of the gusts, or offsets and their speeds
     gust: np.ndarray  # (3,) [m/s]
+    gps_error: np.ndarray  # (3,) [m]
     heading: np.ndarray  # (2,) of the route, level
     way: np.ndarray  # (2,) distance along the route [m], its leg
-    sums: np.ndarray  # (3,) least distance to obstacles [m], energy to move air [J], distance to obstacles now [m]
+    sums: np.ndarray  # (9,) see LEAST to BRAKED
     counts: np.ndarray  # (2,) steps made, rows logged
 
 
 @compiled
 def fly_on(body, air, path, space, state, dt, most, every, rng, log):
-    """Fly up to `most` steps: FLYING, ARRIVED, CRASHED or BLOWN_BACK."""
+    """Fly up to `most` steps: FLYING, ARRIVED, CRASHED, BLOWN_BACK or BATTERY_EMPTY."""
     target_velocity, ahead, back = np.empty(3), np.empty(3), np.empty(3)
-    thrust, stream = np.empty(3), np.empty(3)
+    thrust, stream, drag, velocity = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for _ in range(most):
         step = state.counts[0]
         pace = body.pace * patience(state)
@@ -117,10 +131,7 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
         velocity_at(path, state, speed * PREVIEW, ahead)
         velocity_at(path, state, -speed * PREVIEW, back)
         blow(air, state, step, rng)
-        if step % body.gps_every == 0:
-            for a in range(3):
-                state.seen_position[a] = state.position[a] + body.gps_position * rng.standard_normal()
-                state.seen_velocity[a] = state.velocity[a] + body.gps_velocity * rng.standard_normal()
+        look(body, state, step, rng)
         for a in range(3):
             target_velocity[a] *= pace
             change = pace * (ahead[a] - back[a]) / (2 * PREVIEW)
@@ -134,22 +145,62 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
         thrust[2] += body.mass * GRAVITY + body.rain
         limit(body, thrust)
         pulled = length(thrust)
-        outcome = note(path, space, state, dt, every, pulled, log)
+        outcome = note(path, space, state, dt, every, pulled, body.charge, log)
         if outcome != FLYING:
             return outcome
         for a in range(3):
             stream[a] = air.mean[a] + state.gust[a] - state.velocity[a]
         pressure = body.drag * length(stream)
         for a in range(3):
-            force = thrust[a] + pressure * stream[a]
+            drag[a] = pressure * stream[a]
+            force = thrust[a] + drag[a]
             if a == 2:
                 force -= body.mass * GRAVITY + body.rain
-            state.velocity[a] += dt * force / body.mass
+            change = dt * force / body.mass
+            velocity[a] = state.velocity[a] + 0.5 * change
+            state.velocity[a] += change
             state.before[a] = state.position[a]
             state.position[a] += dt * state.velocity[a]
             state.seen_position[a] += dt * state.seen_velocity[a]
-        state.sums[1] += dt * pulled**1.5 / body.disc
+        spend(body, air, state, dt, thrust, drag, velocity)
     return FLYING
+
+
+@compiled
+def look(body, state, step, rng):
+    """What GPS says of place and speed, when a fix is due; its error drifts from where it was at the start."""
+    if step > 0 and math.floor(step * body.gps_fixes * MORE) == math.floor((step - 1) * body.gps_fixes * MORE):
+        return
+    for a in range(3):
+        if step > 0:
+            new = body.gps_enter[a] * rng.standard_normal()
+            state.gps_error[a] = body.gps_keep * state.gps_error[a] + new
+        state.seen_position[a] = state.position[a] + state.gps_error[a]
+        state.seen_velocity[a] = state.velocity[a] + body.gps_velocity * rng.standard_normal()
+
+
+@compiled
+def spend(body, air, state, dt, thrust, drag, velocity):
+    """Add up the energy of a step, by the velocity in its middle (3,)."""
+    pulled = length(thrust)
+    through, speed, dragged, blown = 0.0, 0.0, 0.0, 0.0
+    for a in range(3):
+        wind = air.mean[a] + state.gust[a]
+        relative = velocity[a] - wind
+        through += thrust[a] * relative / pulled
+        speed += relative * relative
+        dragged -= drag[a] * relative
+        blown += (thrust[a] + drag[a]) * wind
+    across = math.sqrt(max(speed - through * through, 0.0))
+    induced, profile, useful = rotor_power(pulled, math.sqrt(pulled / body.disc), through, across, body.profile)
+    shaft = induced + profile + useful
+    state.sums[BATTERY] += dt * max(shaft, 0.0) / body.efficiency
+    state.sums[INDUCED] += dt * induced
+    state.sums[PROFILE] += dt * profile
+    state.sums[DRAG] += dt * dragged
+    state.sums[WIND] += dt * blown
+    state.sums[RAIN] += dt * body.rain * velocity[2]
+    state.sums[BRAKED] += dt * max(-shaft, 0.0)
 
 
 @compiled
@@ -173,7 +224,7 @@ def drift_on(spring, path, space, state, dt, most, every, rng, log):
             state.velocity[a] = moved if state.counts[0] > 0 else spring.pace * target_velocity[a]
             state.before[a] = state.position[a] if state.counts[0] > 0 else position
             state.position[a] = position
-        outcome = note(path, space, state, dt, every, np.nan, log)
+        outcome = note(path, space, state, dt, every, np.nan, np.inf, log)
         if outcome != FLYING:
             return outcome
     return FLYING
@@ -272,18 +323,20 @@ def limit(body, thrust):
 
 
 @compiled
-def note(path, space, state, dt, every, thrust, log):
+def note(path, space, state, dt, every, thrust, charge, log):
     """Look around after a step, log it if it is time or over, and count it."""
     gap = closest(space, state)
-    state.sums[0] = min(state.sums[0], gap)
+    state.sums[LEAST] = min(state.sums[LEAST], gap)
     outcome = FLYING
     if gap < space.touching:
         outcome = CRASHED
     elif (
         state.way[0] >= path.distance[-1]
-        and squared_distance(state.position, path.points[-1]) <= space.near_goal * space.near_goal
+        and squared_distance(state.seen_position, path.points[-1]) <= space.near_goal * space.near_goal
     ):
         outcome = ARRIVED
+    elif state.sums[BATTERY] >= charge:
+        outcome = BATTERY_EMPTY
     elif space.near_goal < np.inf and squared_distance(state.position, state.target) > LOST**2:
         outcome = BLOWN_BACK
     if state.counts[0] % every == 0 or outcome != FLYING:
@@ -308,11 +361,11 @@ def closest(space, state):
     """Distance to obstacles [m], the least since the step before if it may have touched; then it is where it did."""
     cell = space.cell
     end = in_cells(space, state.position)
-    near = max(min(state.sums[0] / cell, 4.0), space.touching / cell)
+    near = max(min(state.sums[LEAST] / cell, 4.0), space.touching / cell)
     gap = cell * distance_to_obstacle(space.occupied, space.clearance, cell, end, near)
     moved = squared_distance(state.position, state.before)
-    spare = state.sums[2] + gap - 2 * space.touching  # to be moved before it can have touched
-    state.sums[2] = gap
+    spare = state.sums[NOW] + gap - 2 * space.touching  # to be moved before it can have touched
+    state.sums[NOW] = gap
     if moved == 0.0 or (gap >= space.touching and spare >= 0.0 and spare * spare >= moved):
         return gap
     start, touching = in_cells(space, state.before), space.touching / cell

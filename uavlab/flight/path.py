@@ -4,11 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uavlab.flight.disturbance import Wind
+from uavlab.flight.disturbance import Wind, gust_deviations
 from uavlab.route import Route
 from uavlab.spline.curve import BANK
 from uavlab.vehicle import GRAVITY, UAV
-from uavlab.weather import rain_force, wind_drag
+from uavlab.weather import air_speed_held, rain_force, wind_drag
+from uavlab.weather.envelope import limits_broken
 
 TURN_JUMP = 1.0
 """By how much the velocity may jump at a waypoint [m/s]; the autopilot begins to turn a moment before."""
@@ -43,7 +44,7 @@ def constant_speed(route: Route, speed: float) -> Path:
 
 
 def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
-    """As fast as asked, but for turns, for head winds, for the drag that the thrust holds and what it can brake.
+    """As fast as asked, but for turns, head winds, drag that the thrust holds, climb, descent and what it can brake.
 
     Half of what the rotors have left beside weight, rain and mean wind is for turns, half for gusts; it may bank by
     30° at most.
@@ -52,7 +53,8 @@ def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
     mass = uav.weight / GRAVITY
     held, pushed = level_thrust(uav, wind)
     agility = max(min(GRAVITY * np.tan(BANK), 0.5 * (held - pushed) / mass), LEAST_AGILITY)
-    on_legs = np.clip(ground_speed_held(uav, wind, direction, CRUISE), CREEP, max(speed, CREEP))
+    held_there = np.minimum(ground_speed_held(uav, wind, direction, CRUISE), vertical_speed_held(uav, direction))
+    on_legs = np.clip(held_there, CREEP, max(speed, CREEP))
     at_points = np.full(len(points), CREEP)
     turn = np.arccos(np.clip((direction[:-1] * direction[1:]).sum(axis=1), -1.0, 1.0))
     apart = (np.diff(distance)[:-1] + np.diff(distance)[1:]) / 2
@@ -85,40 +87,23 @@ def level_thrust(uav: UAV, wind: Wind) -> tuple[float, float]:
     return held, float(np.linalg.norm(drag))
 
 
-def air_speed_held(uav: UAV, wind: Wind, share: float = 1.0) -> float:
-    """Greatest steady speed through the air [m/s]: the top speed, or less where a share of the thrust holds less."""
-    held, _ = level_thrust(uav, wind)
-    return min(uav.top_speed, float(np.sqrt(2 * share * held / (wind.air_density * uav.drag_area))))
-
-
 def ground_speed_held(uav: UAV, wind: Wind, direction: np.ndarray, share: float = 1.0) -> np.ndarray:
     """Greatest steady speed over ground on each leg (L, 3), (L,) [m/s]; −∞ where the wind blows it off its course."""
-    fastest, along = air_speed_held(uav, wind, share), direction @ wind.mean
+    rain = float(rain_force(wind.rain_mm_per_h, uav.rain_area))
+    fastest = air_speed_held(uav, rain, air_density=wind.air_density, share=share)
+    along = direction @ wind.mean
     across = np.sqrt(np.maximum(wind.speed**2 - along**2, 0.0))
     return np.where(across < fastest, along + np.sqrt(np.maximum(fastest**2 - across**2, 0.0)), -np.inf)
 
 
-def why_grounded(route: Route, uav: UAV, wind: Wind) -> str:
-    """Why a UAV can't fly a route in a wind; empty if it can."""
-    held, pushed = level_thrust(uav, wind)
-    if pushed >= held:
-        return (
-            f"a wind of {wind.speed:.1f} m/s pushes with {pushed:.1f} N, the thrust left over holds {held:.1f} N: "
-            f"{pushed - held:.1f} N short"
-        )
-    direction = geometry(route)[2]
-    along = direction @ wind.mean
-    across = np.sqrt(np.maximum(wind.speed**2 - along**2, 0.0))
-    worst = int(np.argmax(across))
-    fastest = air_speed_held(uav, wind)
-    limit = f"the top speed is {uav.top_speed:g} m/s"
-    if fastest < uav.top_speed:
-        limit = f"its thrust holds {fastest:.1f} m/s through the air"
-    if across[worst] >= fastest:
-        return f"crosswind of {across[worst]:.1f} m/s on leg {worst}, {limit}"
-    slowest = ground_speed_held(uav, wind, direction)
-    worst = int(np.argmin(slowest))
-    if slowest[worst] <= CREEP:
-        side = "head wind" if -along[worst] >= across[worst] else "crosswind"
-        return f"{side} of {max(-along[worst], across[worst]):.1f} m/s on leg {worst}, {limit}"
-    return ""
+def vertical_speed_held(uav: UAV, direction: np.ndarray) -> np.ndarray:
+    """Greatest speed on each leg (L, 3) for which it climbs and sinks no faster than it can, (L,) [m/s]."""
+    with np.errstate(divide="ignore"):
+        return np.where(direction[:, 2] > 0, uav.climb_speed, uav.sink_speed) / np.abs(direction[:, 2])
+
+
+def why_grounded(uav: UAV, wind: Wind, altitude: float) -> str:
+    """Why a UAV stays on the ground in a wind, `grounded_by`; its strongest gust is 3σ above the mean."""
+    gust = wind.speed + 3 * float(gust_deviations(wind, altitude)[0])
+    rain = float(rain_force(wind.rain_mm_per_h, uav.rain_area))
+    return "; ".join(limits_broken(uav, wind.speed, gust, rain, wind.air_density, CREEP))

@@ -14,6 +14,40 @@ from uavlab.resilience import Change
 from uavlab.route import Route
 
 
+class Energy(NamedTuple):
+    """What a flight took from the battery, and where that went [J].
+
+    Balance: efficiency · battery + wind = induced + profile + drag + climb + motion + rain + braked
+    """
+
+    battery: float
+    efficiency: float
+    """Of motors and their control [1]."""
+    induced: float
+    """Spent on pushing air down, see `uavlab.power`."""
+    profile: float
+    """On the drag of the rotors' blades."""
+    drag: float
+    """On the drag of the body."""
+    climb: float
+    """Gained in height, m g h."""
+    motion: float
+    """Of motion at the end, ½ m v²."""
+    rain: float
+    """Spent on climbing against the rain."""
+    wind: float
+    """Work that moving air did on the UAV, as the ground sees it: given, where it pushed."""
+    braked: float
+    """What a fast descent would have given back, lost."""
+
+    @property
+    def imbalance(self) -> float:
+        """By how much the balance fails, over the energy that reached the rotors; what time steps leave."""
+        spent = self.induced + self.profile + self.drag + self.climb + self.motion + self.rain
+        reached = self.efficiency * self.battery
+        return (reached + self.wind - self.braked - spent) / reached
+
+
 @dataclass(frozen=True, eq=False)
 class Flight:
     """One flight, every step of it.
@@ -27,8 +61,8 @@ class Flight:
         A row each time step, see `uavlab.flight.motion.COLUMNS`.
     clearance : float
         Least distance of its centre to the obstacles [m], exact up to four voxels; infinite when it never flew.
-    energy : float
-        From the battery [J]; NaN for an `OffsetProcess`, which has no thrust.
+    energy : Energy, optional
+        What it took from the battery, and where that went; none of an `OffsetProcess`, which has no thrust.
     changes : list of Change
         What the monitor changed.
     """
@@ -37,7 +71,7 @@ class Flight:
     reason: str
     log: np.ndarray
     clearance: float
-    energy: float
+    energy: Energy | None
     changes: list[Change] = field(default_factory=list)
 
     def __repr__(self) -> str:
@@ -87,7 +121,7 @@ class Flights:
     outcome : (N,) array of str
         "arrived", "crashed", "landed", "gave up" or "grounded".
     duration, clearance, energy : (N,) arrays
-        As for `Flight` [s], [m], [J].
+        As for `Flight` [s], [m]; from the battery [J], NaN for an `OffsetProcess`.
     place : (N, 3) array
         Where it ended [m].
     offsets : (N, S, 3) array

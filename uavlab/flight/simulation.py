@@ -2,6 +2,7 @@
 
 import copy
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
 
@@ -10,18 +11,30 @@ import numpy as np
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.voxels import distance_to_obstacle
-from uavlab.flight.autopilot import AUTOPILOT, Autopilot
+from uavlab.flight.autopilot import AUTOPILOT, PERFECT_GPS, Autopilot
 from uavlab.flight.disturbance import OffsetProcess, Wind
 from uavlab.flight.models import Model, model_of
-from uavlab.flight.motion import ARRIVED, BLOWN_BACK, COLUMNS, CRASHED, FLYING, Space, State, steps_to_goal
+from uavlab.flight.motion import (
+    ARRIVED,
+    BATTERY,
+    BATTERY_EMPTY,
+    BLOWN_BACK,
+    COLUMNS,
+    CRASHED,
+    FLYING,
+    LEAST,
+    Space,
+    State,
+    steps_to_goal,
+)
 from uavlab.flight.path import Path, constant_speed, planned_speed, why_grounded
-from uavlab.flight.results import Flight, Flights
+from uavlab.flight.results import Energy, Flight, Flights
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route
 from uavlab.spline import Curve
 from uavlab.spline.curve import CONTACT
 from uavlab.sweep import sweep
-from uavlab.vehicle import UAV
+from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather.turbulence import HIGHEST, LOWEST
 
 Disturbance = Wind | OffsetProcess | Callable[[float], Wind | OffsetProcess]
@@ -29,9 +42,6 @@ Disturbance = Wind | OffsetProcess | Callable[[float], Wind | OffsetProcess]
 TIME_STEP = 0.02
 LONGEST_TURN = 0.2
 """Of the time step times ω_n: beyond it the position control is no longer that of continuous time."""
-
-EFFICIENCY = 0.5
-"""Share of the battery's power that moves air: rotors about 0.7, motors and their control about 0.75."""
 
 PATIENCE, PAUSE = 3.0, 60.0
 """A flight is out of time after so many times the planned duration, and so many seconds more."""
@@ -44,8 +54,6 @@ class Setup(NamedTuple):
 
     route: Route
     speed: float
-    path: Path
-    """As planned in the first wind."""
     space: Space
     uav: UAV
     disturbance: Disturbance
@@ -54,11 +62,20 @@ class Setup(NamedTuple):
     altitude: float
 
     def model(self, now: Wind | OffsetProcess, controller: Controller, path: Path) -> Model:
-        return model_of(now, controller, self.uav, self.autopilot, path, self.altitude, self.time_step)
+        return model_of(
+            now, controller, flown_by(self.uav, controller), self.autopilot, path, self.altitude, self.time_step
+        )
 
-    def path_in(self, now: Wind | OffsetProcess) -> Path:
-        """The same route as fast as another wind allows."""
-        return planned_speed(self.route, self.uav, now, self.speed) if isinstance(now, Wind) else self.path
+    @property
+    def path(self) -> Path:
+        """As planned when the flight begins."""
+        return self.path_in(now_of(self.disturbance, 0.0), first_controller(self.autopilot))
+
+    def path_in(self, now: Wind | OffsetProcess, controller: Controller) -> Path:
+        """The route, as fast as a wind and a controller's tilt allow."""
+        if isinstance(now, OffsetProcess):
+            return constant_speed(self.route, self.speed)
+        return planned_speed(self.route, flown_by(self.uav, controller), now, self.speed)
 
 
 def fly(
@@ -77,8 +94,8 @@ def fly(
     In a `Wind` the UAV is a point mass: m a = thrust + ½ ρ C S |V_rel| V_rel − weight − rain. Its autopilot sends a
     reference along the route, no faster than turns and thrust allow, and pulls the UAV after it like a critically
     damped spring, by what GPS says; where the UAV falls behind, the reference waits. Thrust and tilt are limited,
-    height first. It has arrived when it is near the goal. As an `OffsetProcess` the offsets are simply added to a
-    reference of constant speed, and what arrives is the reference.
+    height first. It has arrived when it is near the goal, as far as it knows. As an `OffsetProcess` the offsets are
+    simply added to a reference of constant speed, and what arrives is the reference.
 
     Parameters
     ----------
@@ -100,9 +117,9 @@ def fly(
     Returns
     -------
     Flight
-        Wind above what the thrust can hold gives `outcome` "grounded" with the margin in `reason`. A UAV that can't
-        keep up "gave up": it was blown back, 30 m from its reference, or ran out of time, three times what was planned
-        and a minute.
+        What `grounded_by` keeps on the ground is "grounded", with the reason. A UAV that can't keep up "gave up": it
+        was blown back, 30 m from its reference; its battery was down to the reserve; or it ran out of time, three
+        times what was planned and a minute.
 
     Raises
     ------
@@ -113,7 +130,7 @@ def fly(
     checks.whole("number", number, least=0)
     setup, grounded = setup_of(route, city, uav, disturbance, autopilot, time_step)
     if setup is None:
-        return Flight("grounded", grounded, np.empty((0, len(COLUMNS))), np.inf, 0.0)
+        return Flight("grounded", grounded, np.empty((0, len(COLUMNS))), np.inf, None)
     return flown(setup, checks.generator("rng", rng).spawn(number + 1)[number], every=1)
 
 
@@ -194,7 +211,8 @@ def batch(setup: Setup, generators: list[np.random.Generator], every: int) -> li
     for generator in generators:
         flight = flown(setup, generator, every)
         last = flight.log[-1]
-        done.append((flight.outcome, last[0], flight.clearance, flight.energy, last[1:4], flight.log[:-1, 7:10]))
+        battery = np.nan if flight.energy is None else flight.energy.battery
+        done.append((flight.outcome, last[0], flight.clearance, battery, last[1:4], flight.log[:-1, 7:10]))
     return done
 
 
@@ -224,18 +242,27 @@ def setup_of(
         )
     first = now_of(disturbance, 0.0)
     speed = uav.cruise_speed if autopilot.speed is None else float(autopilot.speed)
+    altitude = float(np.clip(way.points[:, 2].mean() - city.origin[2], LOWEST, HIGHEST))
     if isinstance(first, Wind):
-        grounded = why_grounded(way, uav, first)
-        if grounded:
+        if autopilot.gps != PERFECT_GPS and time_step * autopilot.gps.rate > 1 + 1e-9:
+            raise ValueError(
+                f"time_step must be at most {1 / autopilot.gps.rate:.3g} s, from one fix of gps to the next, "
+                f"got {time_step:g}"
+            )
+        grounded = why_grounded(flown_by(uav, first_controller(autopilot)), first, altitude)
+        if grounded and autopilot.heeds_limits:
             return None, grounded
-        path = planned_speed(way, uav, first, speed)
-    else:
-        path = constant_speed(way, speed)
     touching = (1 - CONTACT) * uav.diameter / 2
     near_goal = autopilot.acceptance_radius if isinstance(first, Wind) else np.inf
     space = Space(city.occupied, city.runs, city.clearance, city.origin, city.cell, touching, near_goal)
-    altitude = float(np.clip(way.points[:, 2].mean() - city.origin[2], LOWEST, HIGHEST))
-    return Setup(way, speed, path, space, uav, disturbance, autopilot, float(time_step), altitude), ""
+    return Setup(way, speed, space, uav, disturbance, autopilot, float(time_step), altitude), ""
+
+
+def first_controller(autopilot: Autopilot) -> Controller:
+    """With which a flight begins."""
+    if autopilot.monitor is None or autopilot.strategy == "fixed":
+        return autopilot.controller
+    return autopilot.monitor.controller
 
 
 def now_of(disturbance: Disturbance, time: float) -> Wind | OffsetProcess:
@@ -250,10 +277,11 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
     """One flight, with a row of its log every so many steps."""
     autopilot, dt = setup.autopilot, setup.time_step
     monitor = None if autopilot.strategy == "fixed" else copy.deepcopy(autopilot.monitor)
-    controller = monitor.controller if monitor else autopilot.controller
-    now, path = now_of(setup.disturbance, 0.0), setup.path
+    controller = first_controller(autopilot)
+    now = now_of(setup.disturbance, 0.0)
+    path = setup.path
     model = setup.model(now, controller, path)
-    state = start_of(setup)
+    state = start_of(path.points[0])
     most = planned = steps_to_goal(path, model.pace, dt)
     if monitor is not None or callable(setup.disturbance):
         most = max(round(autopilot.interval / dt), 1)
@@ -276,40 +304,53 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
                 f"after {type(now).__name__}"
             )
         if monitor:
-            advised = monitor.observe(time, off_route(path, state), room(setup.space, state))
+            seen = state.seen_position if isinstance(now, Wind) else state.position
+            advised = monitor.observe(time, off_route(path, seen, state), room(setup.space, state))
             if autopilot.strategy == "grounded" and advised != controller:
                 ending = "landed"
         if ending:
             most, every = 1, 1  # one step more, to log where
         if (then, advised) != (now, controller):
-            path = setup.path_in(then) if then != now else path
             now, controller = then, advised
+            path = setup.path_in(now, controller)
             changed = setup.model(now, controller, path)
             model.hand_over(state, changed)
             model = changed
     flight_log = np.concatenate(logs)
     where = f"after {flight_log[-1, 0]:.1f} s at {checks.show(flight_log[-1, 1:4])}"
-    energy = np.nan
-    if isinstance(now, Wind):
-        energy = float(state.sums[1] / EFFICIENCY)
     changes = monitor.log if monitor else []
     if outcome == CRASHED:
         name, reason = "crashed", f"crashed {where}"
     elif outcome == ARRIVED:
         name, reason = "arrived", ""
+    elif outcome == BATTERY_EMPTY:
+        name, reason = "gave up", f"battery empty {where}, {from_goal(path, state):.1f} m from the goal"
     elif outcome == BLOWN_BACK:
         name, reason = "gave up", f"blown back {where}, {behind(state):.0f} m from its reference"
     elif ending == "out of time":
-        left = float(np.linalg.norm(state.position - path.points[-1]))
-        name, reason = "gave up", f"out of time {where}, {left:.1f} m from the goal"
+        name, reason = "gave up", f"out of time {where}, {from_goal(path, state):.1f} m from the goal"
     else:
         name, reason = "landed", f"landed {where}: {changes[-1].reason}"
-    return Flight(name, reason, flight_log, float(state.sums[0]), energy, changes)
+    energy = energy_of(state, setup.uav, path.points[0]) if isinstance(now, Wind) else None
+    return Flight(name, reason, flight_log, float(state.sums[LEAST]), energy, changes)
 
 
-def start_of(setup: Setup) -> State:
-    """At the start of the route, at rest, in still air."""
-    position = setup.path.points[0].copy()
+def flown_by(uav: UAV, controller: Controller) -> UAV:
+    """A UAV with the tilt that a controller allows."""
+    return uav if controller.tilt_share == 1 else replace(uav, max_tilt=controller.tilt_share * uav.max_tilt)
+
+
+def energy_of(state: State, uav: UAV, start: np.ndarray) -> Energy:
+    """What a flight took from the battery, and where it went."""
+    battery, induced, profile, drag, wind, rain, braked = (float(value) for value in state.sums[BATTERY:])
+    climb = uav.weight * float(state.position[2] - start[2])
+    motion = uav.weight / GRAVITY * float(state.velocity @ state.velocity) / 2
+    return Energy(battery, uav.drive_efficiency, induced, profile, drag, climb, motion, rain, wind, braked)
+
+
+def start_of(start: np.ndarray) -> State:
+    """At the start of the route (3,), at rest, in still air."""
+    position = start.copy()
     return State(
         position=position,
         before=position.copy(),
@@ -319,9 +360,10 @@ def start_of(setup: Setup) -> State:
         seen_velocity=np.zeros(3),
         lags=np.zeros((3, 2)),
         gust=np.zeros(3),
+        gps_error=np.zeros(3),
         heading=np.array([1.0, 0.0]),
         way=np.zeros(2),
-        sums=np.array([np.inf, 0.0, np.inf]),
+        sums=np.array([np.inf, np.inf] + [0.0] * 7),
         counts=np.zeros(2, dtype=np.int64),
     )
 
@@ -331,9 +373,14 @@ def behind(state: State) -> float:
     return float(np.linalg.norm(state.position - state.target))
 
 
-def off_route(path: Path, state: State) -> float:
-    """Distance from the reference across the route [m]."""
-    offset, direction = state.position - state.target, path.direction[int(state.way[1])]
+def from_goal(path: Path, state: State) -> float:
+    """Distance from the goal [m]."""
+    return float(np.linalg.norm(state.position - path.points[-1]))
+
+
+def off_route(path: Path, seen: np.ndarray, state: State) -> float:
+    """Distance from the reference across the route [m] of a place (3,), where the UAV has itself."""
+    offset, direction = seen - state.target, path.direction[int(state.way[1])]
     return float(np.linalg.norm(offset - (offset @ direction) * direction))
 
 

@@ -32,6 +32,7 @@ from uavlab.resilience import (
 )
 from uavlab.route import Route
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
+from uavlab.weather import Weather, grounded_by
 
 PENALTY = 2.0
 """ω₀: what a metre in the zone costs more, before any force."""
@@ -273,8 +274,8 @@ def flight_conditions(
     grounded = ""
     if resilience_level(load, kind) == "grounded":
         grounded = f"{load} load in {kind} disturbance (REPARE Table 3)"
-    elif force >= reserve:
-        grounded = f"gusts push with {force:.1f} N, the thrust left over holds {reserve:.1f} N"
+    else:
+        grounded = "; ".join(grounded_by(loaded, Weather(forecast_wind=speed)))
     distance = safe_distance(load, kind, reading=reading, uav=uav)
     if speed > DISTURBANCES[kind]:
         distance = max(distance, physical_distance(loaded, speed))

@@ -31,7 +31,8 @@ def terminal_speed(uav: UAV = RISK_QUADROTOR, *, air_density: float = AIR_DENSIT
     """
     checks.instance("uav", uav, UAV)
     checks.positive("air_density", air_density)
-    return float(np.sqrt(2 * uav.weight / (uav.drag_area * air_density)))
+    area = uav.drag_area if uav.fall_drag_area is None else uav.fall_drag_area
+    return float(np.sqrt(2 * uav.weight / (area * air_density)))
 
 
 def fall_speed(

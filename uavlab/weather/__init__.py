@@ -1,6 +1,6 @@
 """Weather: states of it, the forces they make, turbulence, the flight envelope, and real records."""
 
-from uavlab.weather.envelope import course_wind_limit, grounded_by, mean_wind_limit, wind_limit
+from uavlab.weather.envelope import air_speed_held, course_wind_limit, grounded_by, mean_wind_limit, wind_limit
 from uavlab.weather.forces import (
     ReferenceWind,
     Weather,
@@ -19,6 +19,7 @@ __all__ = [
     "ReferenceWind",
     "Weather",
     "air_density",
+    "air_speed_held",
     "course_wind_limit",
     "dryden_gusts",
     "dryden_parameters",

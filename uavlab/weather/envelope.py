@@ -124,12 +124,31 @@ def mean_wind_limit(
     return np.minimum(gust / gust_factor, against)
 
 
+def air_speed_held(uav: UAV, rain: float = 0.0, *, air_density: float = STANDARD_AIR, share: float = 1.0) -> float:
+    """Greatest steady speed through the air [m/s]: the top speed, or less where the thrust left over holds less.
+
+    Parameters
+    ----------
+    uav : UAV
+    rain : float
+        Force of the rain F_r [N], at least 0.
+    air_density : float
+        ρ [kg/m³], above 0.
+    share : float
+        Of the horizontal reserve that steady drag may take.
+    """
+    held = share * float(uav.horizontal_reserve(rain))
+    return min(uav.top_speed, float(np.sqrt(2.0 * held / (air_density * uav.drag_area))))
+
+
 def grounded_by(
     uav: UAV, weather: Weather, *, ground_speed: float = 0.0, safety_factor: float = SAFETY_FACTOR
 ) -> tuple[str, ...]:
-    """What keeps the UAV on the ground in this weather.
+    """What keeps the UAV on the ground in this weather: the one rule that flights, planners and pages ask.
 
-    The reference wind (REPARE Eq. 3) gives the mean wind and the gust; the wind may come from any side.
+    Weight and rain take the lift that safety asks for (REPARE Eq. 2); the strongest gust pushes harder than the thrust
+    holds; or the mean wind leaves no way against it. The reference wind (REPARE Eq. 3) gives the mean wind and the
+    gust; the wind may come from any side.
 
     Parameters
     ----------
@@ -151,13 +170,26 @@ def grounded_by(
         If an argument is out of its range.
     """
     checks.not_negative("ground_speed", ground_speed)
-    rain = rain_force(weather.rain_mm_per_h, uav.rain_area)
+    mean, gust = weather.reference_wind
+    rain = float(rain_force(weather.rain_mm_per_h, uav.rain_area))
+    return limits_broken(uav, mean, gust, rain, weather.air_density, ground_speed, safety_factor)
+
+
+def limits_broken(
+    uav: UAV,
+    mean: float,
+    gust: float,
+    rain: float,
+    air_density: float,
+    ground_speed: float = 0.0,
+    safety_factor: float = SAFETY_FACTOR,
+) -> tuple[str, ...]:
+    """`grounded_by` for a mean wind and a gust [m/s] and a force of rain [N]."""
     margin = lift_margin(uav, rain, safety_factor=safety_factor)
     if margin <= 0:
         return (f"lift: {-margin:.2f} N short of {safety_factor:g} times weight and rain",)
-    mean, gust = weather.reference_wind
-    held = float(wind_limit(uav, rain, air_density=weather.air_density, safety_factor=safety_factor))
-    speed = min(uav.top_speed, held)
+    held = float(wind_limit(uav, rain, air_density=air_density, safety_factor=safety_factor))
+    speed = air_speed_held(uav, rain, air_density=air_density)
     reasons = []
     if gust > held:
         reasons.append(f"gusts: {gust:.1f} m/s, and the thrust left over holds {held:.1f} m/s")

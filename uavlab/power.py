@@ -1,0 +1,142 @@
+"""What flight costs: momentum theory of rotors, and the power that a multirotor takes from its battery.
+
+A rotor that pulls with T pushes air down with the induced velocity w (Glauert 1926). Its shaft turns against the thrust
+times the speed of the air through the disc, which holds the climb and the drag of the body, and against the drag of its
+own blades. Whatever the flight, that is where the energy goes.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.compiled import compiled
+from uavlab.vehicle import INDUCED, STANDARD_AIR, UAV
+from uavlab.weather import rain_force, wind_drag
+
+BLADE_LOADING = 0.012
+"""Thrust coefficient T/(ρ A U²), tip speed U; of small rotors 0.01 to 0.015, whatever they pull, as U follows."""
+
+ADVANCE = 4.65
+"""By how much the drag of blades grows with the square of the advance ratio V/U (Leishman 2006, 5.4)."""
+
+NEWTON = 12
+"""Steps of Newton's method at most; four or five are enough."""
+
+
+class Power(NamedTuple):
+    """What the power of a flight is spent on [W]; each a number, or an array."""
+
+    induced: np.ndarray
+    """On pushing air down."""
+    profile: np.ndarray
+    """On the drag of the blades."""
+    useful: np.ndarray
+    """Thrust times the speed of the UAV through the air: climb and drag of the body. Negative in descent."""
+    battery: np.ndarray
+    """All of it over the efficiency of the drive; at least 0: what a fast descent would give back is lost."""
+
+
+@compiled
+def induced_velocity(hover, through, across):
+    """Induced velocity w of a rotor, Glauert: w √(V_∥² + (V_n + w)²) = w_h².
+
+    Vertical descent at up to twice w_h has no momentum theory, as the rotor works in its own wake (vortex ring). There
+    this goes on along the branch of climbs, which asks for up to a fifth of the ideal hover power less than what was
+    measured on rotors (Leishman 2006, 2.13.5).
+
+    Parameters
+    ----------
+    hover : float
+        w_h = √(T/(2 ρ A)), the induced velocity in hover [m/s], at least 0.
+    through, across : float
+        V_n, speed of the UAV through the air along the thrust, and V_∥, across it [m/s].
+
+    Returns
+    -------
+    float
+        w [m/s].
+    """
+    low, high = 0.0, hover + max(-through, 0.0)
+    induced = high
+    for _ in range(NEWTON):
+        flow = through + induced
+        speed = math.sqrt(across * across + flow * flow)
+        surplus = induced * speed - hover * hover
+        if surplus > 0:
+            high = induced
+        else:
+            low = induced
+        slope = speed + induced * flow / speed if speed > 0 else 0.0
+        following = induced - surplus / slope if slope > 0 else low
+        if not low <= following <= high:
+            following = (low + high) / 2
+        if abs(following - induced) <= 1e-9 * hover:
+            return following
+        induced = following
+    return induced
+
+
+@compiled
+def rotor_power(thrust, hover, through, across, profile):
+    """Induced, profile and useful power of rotors [W]; `profile` is the share of the ideal hover power."""
+    induced = INDUCED * thrust * induced_velocity(hover, through, across)
+    advance = 0.0 if hover == 0 else BLADE_LOADING / 2 * (across / hover) ** 2
+    return induced, profile * thrust * hover * (1 + ADVANCE * advance), thrust * through
+
+
+def profile_share(uav: UAV) -> float:
+    """What the drag of the blades takes in hover, over the ideal power: what the figure of merit leaves for it."""
+    return 1 / uav.figure_of_merit - INDUCED
+
+
+def power_needed(
+    uav: UAV,
+    velocity: npt.ArrayLike,
+    wind: npt.ArrayLike = (0.0, 0.0, 0.0),
+    *,
+    rain_mm_per_h: float = 0.0,
+    air_density: float = STANDARD_AIR,
+) -> Power:
+    """Power of steady flight: thrust holds weight, rain and the drag of the body.
+
+    P = κ T w + P₀ (1 + 4.65 (V/U)²) + T·V over the efficiency of the drive, with V through the air, w of Glauert,
+    κ = 1.15. P₀ is what the figure of merit leaves in hover beside κ T w_h; it grows with T^1.5 as w_h does.
+
+    Parameters
+    ----------
+    uav : UAV
+    velocity : (..., 3) or (..., 2) array
+        Over ground [m/s].
+    wind : (2,) or (3,) array
+        Where the air moves to [m/s].
+    rain_mm_per_h : float
+        [mm/h]
+    air_density : float
+        ρ [kg/m³], above 0.
+
+    Returns
+    -------
+    Power
+        Its parts (...) [W]. Whether the rotors can pull so hard isn't asked: `feasibility` and `fly` do.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite or has another shape.
+    """
+    checks.instance("uav", uav, UAV)
+    checks.positive_number("air_density", air_density)
+    moving, air = checks.vectors(velocity=velocity, wind=checks.three("wind", wind)[: np.shape(velocity)[-1]])
+    flat = np.zeros((*moving.shape[:-1], 3 - moving.shape[-1]))
+    through_air = np.concatenate([moving - air, flat], axis=-1)
+    thrust = -wind_drag(np.zeros(3), through_air, uav.drag_area, air_density=air_density)
+    thrust[..., 2] += uav.weight + rain_force(rain_mm_per_h, uav.rain_area)
+    pulled = np.linalg.norm(thrust, axis=-1)
+    through = (thrust * through_air).sum(axis=-1) / pulled
+    across = np.sqrt(np.maximum((through_air**2).sum(axis=-1) - through**2, 0.0))
+    hover = np.sqrt(pulled / (2 * air_density * uav.rotor_area))
+    parts = np.vectorize(rotor_power, otypes=[float] * 3)(pulled, hover, through, across, profile_share(uav))
+    return Power(*parts, np.maximum(sum(parts), 0.0) / uav.drive_efficiency)
