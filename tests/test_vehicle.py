@@ -17,8 +17,8 @@ def test_weight_includes_the_payload():
 
 
 def test_presets_have_the_published_values():
-    assert (RISK_QUADROTOR.mass, RISK_QUADROTOR.cruise_speed) == (1.38, 16.0)
-    assert RISK_QUADROTOR.drag_area == pytest.approx(0.00564)
+    assert (RISK_QUADROTOR.mass, RISK_QUADROTOR.top_speed) == (1.38, 16.0)
+    assert RISK_QUADROTOR.fall_drag_area == pytest.approx(0.00564)
     assert RISK_QUADROTOR.rain_area == pytest.approx(0.12566, abs=1e-5)
 
 

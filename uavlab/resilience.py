@@ -246,8 +246,8 @@ class Controller(NamedTuple):
 
 
 BASIC = Controller("basic", 1.0, 1.0)
-ADVANCED = Controller("advanced", 0.5, 1.6, 2 / 3)
-"""REPARE gives no numbers; half the speed, a tighter control and two thirds of the tilt are ours."""
+ADVANCED = Controller("advanced", 0.5, 1.6, 0.8)
+"""REPARE gives no numbers; half the speed, a tighter control and four fifths of the tilt are ours."""
 
 
 def basic_offset(controller: Controller) -> float:

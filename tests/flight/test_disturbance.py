@@ -38,7 +38,7 @@ def gusts_of(wind, count=400, duration=40.0, seed=0):
     setup, _ = setup_of(straight(), SKY, LIGHT_QUADROTOR, wind, EXACT, DT)
     air = air_of(wind, AIR_SPEED, ALTITUDE, DT)
     for one, rng in zip(gusts, np.random.default_rng(seed).spawn(count), strict=True):
-        blown(air, start_of(setup), len(one), rng, one)
+        blown(air, start_of(setup.path.points[0]), len(one), rng, one)
     return gusts
 
 
@@ -95,7 +95,7 @@ def test_dryden_gusts_are_stationary_from_the_first_moment():
     """Over 100 000 starts, whose variance is known to 0.45 %; the two lags of a gust belong together."""
     gusts = np.empty((300_000, 3))
     setup, _ = setup_of(straight(), SKY, LIGHT_QUADROTOR, WINDS[2], EXACT, DT)
-    blown(air_of(WINDS[2], AIR_SPEED, ALTITUDE, DT), start_of(setup), 3, np.random.default_rng(0), gusts)
+    blown(air_of(WINDS[2], AIR_SPEED, ALTITUDE, DT), start_of(setup.path.points[0]), 3, np.random.default_rng(0), gusts)
     started = gusts.reshape(-1, 3, 3)[..., [1, 0, 2]] / gust_deviations(WINDS[2], ALTITUDE)
     assert (started**2).mean(axis=0) == pytest.approx(np.ones((3, 3)), abs=0.02)
 

@@ -8,13 +8,15 @@ import pytest
 from places import EXACT, SKY, beside_wall, straight
 
 from uavlab.city import City
-from uavlab.flight import Autopilot, Gps, OffsetProcess, Wind, fly, monte_carlo, offset_sigma
+from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, Wind, fly, monte_carlo, offset_sigma
 from uavlab.flight.motion import LEASH, LEAST_THRUST
-from uavlab.resilience import ADVANCED, Controller
+from uavlab.power import power_needed
+from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR, RISK_QUADROTOR
 from uavlab.weather.forces import STANDARD_AIR
 
+UNHEEDING = Autopilot(heeds_limits=False)
 CALM = Wind(gusts="none")
 MASS = LIGHT_QUADROTOR.weight / GRAVITY
 DRAG = 0.5 * STANDARD_AIR * LIGHT_QUADROTOR.drag_area
@@ -27,12 +29,12 @@ def drag_of(stream):
 
 def hovering(wind, autopilot=EXACT, uav=LIGHT_QUADROTOR):
     """A flight so slow that it hovers: half a metre per second."""
-    return fly(straight(20.0), SKY, uav, wind, replace(autopilot, speed=0.5), rng=0)
+    return fly(straight(20.0), SKY, uav, wind, replace(autopilot, speed=0.5, heeds_limits=False), rng=0)
 
 
 def flown_offsets(wind, uav=LIGHT_QUADROTOR, speed=5.0, flights=120, **options):
     """Offsets (flights, seconds, 3) along the air stream, across it and up, without start and end."""
-    pilot = replace(EXACT, speed=speed, **options)
+    pilot = replace(EXACT, speed=speed, heeds_limits=False, **options)
     runs = monte_carlo(LONG, SKY, uav, wind, pilot, rng=1, flights=flights)
     arrived = runs.outcome == "arrived"
     assert arrived.mean() > 0.95
@@ -99,8 +101,8 @@ def test_energy_against_wind_and_with_load_grows_with_the_thrust():
     drag = 0.5 * 1.0 * loaded.drag_area * 10.0**2
     thrust = np.hypot(loaded.weight, drag)
     flight = hovering(wind, uav=loaded)
-    power = thrust**1.5 / np.sqrt(2 * 1.0 * loaded.rotor_area) / EFFICIENCY
-    assert flight.energy == pytest.approx(power * flight.duration, rel=2e-3)
+    power = power_needed(loaded, (0.5, 0, 0), wind.mean, air_density=1.0).battery
+    assert flight.energy.battery == pytest.approx(power * flight.duration, rel=5e-3)
     assert flight.column("thrust")[500] == pytest.approx(thrust, rel=1e-4)
 
 
@@ -114,7 +116,8 @@ def test_rain_is_carried_by_more_thrust_and_moves_nothing():
 
 def test_thrust_stays_between_its_limits_in_gusts_that_ask_for_more():
     flights = [
-        fly(straight(), SKY, LIGHT_QUADROTOR, Wind((-6, 0), deviation=9.0), rng=0, number=number) for number in range(6)
+        fly(straight(), SKY, LIGHT_QUADROTOR, Wind((-6, 0), deviation=9.0), UNHEEDING, rng=0, number=number)
+        for number in range(6)
     ]
     thrust = np.concatenate([flight.column("thrust") for flight in flights])
     assert thrust.max() == pytest.approx(LIGHT_QUADROTOR.thrust, rel=1e-12)
@@ -125,7 +128,7 @@ def test_thrust_stays_between_its_limits_in_gusts_that_ask_for_more():
 def test_tilt_and_thrust_from_accelerations_stay_within_their_limits(tilt):
     """Without air m·(a + g) is the thrust; a GPS that errs by metres makes the autopilot ask for all of it."""
     uav = replace(LIGHT_QUADROTOR, drag_area=1e-9, max_tilt=np.radians(tilt))
-    pilot = replace(EXACT, gps=Gps(position=10.0, velocity=10.0))
+    pilot = replace(EXACT, gps=Gps(drift=10.0, vertical_drift=10.0, correlation=0.01, velocity=10.0))
     flight = fly(straight(), SKY, uav, CALM, pilot, rng=3)
     velocity = np.diff(flight.position, axis=0) / 0.02
     thrust = MASS * (np.diff(velocity, axis=0) / 0.02 + [0, 0, GRAVITY])
@@ -198,16 +201,103 @@ def test_a_heavier_load_is_blown_about_less_until_its_thrust_runs_out():
     assert sigmas(wild, loaded)[0] > 1.3 * sigmas(wild)[0]
 
 
-def test_gps_errors_add_to_the_offsets():
-    """Fixes that err by half a metre leave offsets of some decimetres; errors without gusts, gusts without errors."""
-    errors = [
-        monte_carlo(LONG, SKY, LIGHT_QUADROTOR, CALM, replace(EXACT, gps=gps), rng=0, flights=40).offsets[:, 12:-8]
-        for gps in (Gps(), Gps(position=1.0, velocity=0.2), EXACT.gps)
+@pytest.mark.parametrize("time_step", [0.02, 0.1])
+def test_gps_errors_drift_and_pass_through_whole(time_step):
+    """Offsets are as large as the error, which began at 0: σ √(1 − exp(−2t/τ)) after t; twice the σ, twice as large."""
+    gps = Gps(drift=2.0, vertical_drift=0.5, correlation=60.0, velocity=0.0)
+    flights = [
+        monte_carlo(
+            LONG, SKY, LIGHT_QUADROTOR, CALM, replace(EXACT, gps=errs), rng=0, flights=300, time_step=time_step
+        ).offsets
+        for errs in (gps, gps._replace(drift=4.0, vertical_drift=1.0), PERFECT_GPS)
     ]
-    usual, doubled, none = (offsets.std(axis=(0, 1)) for offsets in errors)
-    assert doubled == pytest.approx(2 * usual, rel=0.05)  # the control is linear
-    assert (usual > 0.05).all()
-    assert none == pytest.approx(0.0, abs=1e-3)
+    for after in (40, 80):
+        expected = gps.drift * np.sqrt(1 - np.exp(-2 * after / gps.correlation))
+        usual, doubled, none = (offsets[:, after].std(axis=0) for offsets in flights)
+        assert usual[:2] == pytest.approx(expected, rel=0.12)
+        assert usual[2] == pytest.approx(expected / 4, rel=0.12)
+        assert doubled == pytest.approx(2 * usual, rel=0.02)  # the control is linear
+        assert none == pytest.approx(0.0, abs=2e-3)
+
+
+def test_gps_keeps_its_own_rate_at_any_time_step():
+    """Errors of its speed alone: as large at 0.02 and 0.05 s for the same rate, larger for fewer fixes."""
+    spreads = [
+        monte_carlo(
+            LONG,
+            SKY,
+            LIGHT_QUADROTOR,
+            CALM,
+            replace(EXACT, gps=Gps(rate=rate, drift=0.0, vertical_drift=0.0, velocity=0.5)),
+            rng=0,
+            flights=60,
+            time_step=time_step,
+        )
+        .offsets[:, 12:-8]
+        .std()
+        for rate, time_step in ((7.0, 0.02), (7.0, 0.05), (2.0, 0.02))
+    ]
+    assert spreads[1] == pytest.approx(spreads[0], rel=0.05)
+    assert spreads[2] > 1.5 * spreads[0]
+    with pytest.raises(ValueError, match=r"time_step must be at most 0.1 s, from one fix of gps to the next, got 0.2"):
+        fly(LONG, SKY, LIGHT_QUADROTOR, CALM, rng=0, time_step=0.2)
+
+
+@pytest.mark.parametrize("controller", [BASIC, ADVANCED], ids=lambda controller: controller.name)
+def test_an_advanced_controller_tilts_less(controller):
+    """Without air m·(a + g) is the thrust; a GPS that errs by metres makes the autopilot tilt as far as it may."""
+    uav = replace(LIGHT_QUADROTOR, drag_area=1e-9)
+    gps = Gps(drift=10.0, vertical_drift=10.0, correlation=0.01, velocity=10.0)
+    flight = fly(straight(), SKY, uav, CALM, replace(EXACT, gps=gps, controller=controller), rng=3)
+    velocity = np.diff(flight.position, axis=0) / 0.02
+    thrust = np.diff(velocity, axis=0) / 0.02 + [0, 0, GRAVITY]
+    tilted = np.degrees(np.arctan2(np.hypot(thrust[:, 0], thrust[:, 1]), thrust[:, 2]))
+    assert tilted.max() == pytest.approx({"basic": 60.0, "advanced": 48.0}[controller.name], abs=1e-6)
+
+
+GUSTY = Wind((3, 2, 0), deviation=1.5, rain_mm_per_h=20)
+
+
+@pytest.mark.parametrize(
+    ("wind", "uav"),
+    [(CALM, LIGHT_QUADROTOR), (GUSTY, LIGHT_QUADROTOR.loaded(0.6)), (GUSTY, RISK_QUADROTOR),
+     (Wind((0, -7.0), "dryden"), RISK_QUADROTOR),
+     (lambda time: Wind((0, 0.2 * time), "none", air_density=1.2 - 0.004 * time), RISK_QUADROTOR)],
+    ids=["calm", "gusty and loaded", "gusty", "dryden", "changing"],
+)  # fmt: skip
+@pytest.mark.parametrize("time_step", [0.02, 0.1])
+def test_the_energy_of_a_flight_is_where_it_went(wind, uav, time_step):
+    """Battery times efficiency = height and motion gained, and what rotors, blades and drag took, to 1e-3."""
+    route = Route([(50, 50, 20), (90, 50, 20), (90, 50, 80), (60, 90, 60), (60, 90, 30)])
+    for seed in range(3):
+        flight = fly(route, SKY, uav, wind, rng=seed, time_step=time_step)
+        energy = flight.energy
+        assert flight.outcome == "arrived"
+        assert abs(energy.imbalance) < 1e-3
+        assert energy.battery > 0
+        assert energy.climb == pytest.approx(uav.weight * (flight.position[-1, 2] - 20))
+        speed = flight.column("speed")[-1]
+        assert energy.motion == pytest.approx(uav.weight / GRAVITY * speed**2 / 2)
+        assert min(energy.induced, energy.profile, energy.drag) > 0
+
+
+def test_a_climb_costs_at_least_its_height():
+    up = fly(Route([(50, 50, 10), (50, 50, 90)]), SKY, RISK_QUADROTOR, CALM, EXACT, rng=0).energy
+    down = fly(Route([(50, 50, 90), (50, 50, 10)]), SKY, RISK_QUADROTOR, CALM, EXACT, rng=0).energy
+    height = RISK_QUADROTOR.weight * 80
+    assert up.climb == pytest.approx(height, rel=5e-3)
+    assert up.battery > up.climb / RISK_QUADROTOR.drive_efficiency
+    assert up.battery > down.battery * 1.1
+
+
+def test_a_battery_that_is_down_to_its_reserve_ends_the_flight():
+    small = replace(LIGHT_QUADROTOR, battery=20e3, reserve=0.3)
+    flight = fly(MILE, FAR, small, CALM, EXACT, rng=0)
+    assert flight.outcome == "gave up"
+    assert re.fullmatch(r"battery empty after \d+\.\d s at \(.*\), \d+\.\d m from the goal", flight.reason)
+    assert flight.energy.battery == pytest.approx(14e3, rel=1e-3)
+    assert not np.isin(monte_carlo(MILE, FAR, small, CALM, EXACT, rng=0, flights=2).outcome, "arrived").any()
+    assert fly(MILE, FAR, replace(small, battery=150e3), CALM, EXACT, rng=0).outcome == "arrived"
 
 
 @pytest.mark.parametrize("disturbance", [CALM, OffsetProcess(0.0)], ids=["wind", "offsets"])
@@ -228,7 +318,7 @@ def test_a_route_through_a_wall_crashes_at_the_wall(disturbance):
 
 FAR = City(np.zeros((800, 10, 10), bool), cell=2.0)
 MILE = Route([(20, 10, 10), (1520, 10, 10)])
-HURRIED = Autopilot(speed=16.0)
+HURRIED = replace(EXACT, speed=16.0, heeds_limits=False)
 
 
 def changing(after, later):
@@ -323,7 +413,7 @@ def test_nothing_tunnels_through_a_wall_at_any_permitted_step(disturbance, uav, 
     """Before, at 20 m/s and 0.2 s, 100 of 100 bodies and 91 of 100 offsets got through a metre of wall."""
     route = Route([(10, 10, 10), (55, 10, 10)])
     flights = monte_carlo(
-        route, City(WALL), uav, disturbance, Autopilot(speed=20.0), rng=1, flights=40, time_step=time_step
+        route, City(WALL), uav, disturbance, replace(EXACT, speed=20.0), rng=1, flights=40, time_step=time_step
     )
     assert flights.crashed.all()
     touching = 0.98 * uav.diameter / 2
@@ -343,10 +433,12 @@ def test_a_step_past_a_corner_touches_nothing():
 
 def test_energy_counts_the_air_of_each_moment():
     thin, thick = Wind(gusts="none", air_density=0.9), Wind(gusts="none", air_density=1.3)
-    one, other = (hovering(wind).energy for wind in (thin, thick))
-    assert one / other == pytest.approx(np.sqrt(1.3 / 0.9), rel=1e-3)
+    one, other = (hovering(wind).energy.battery for wind in (thin, thick))
+    assert one / other == pytest.approx(np.sqrt(1.3 / 0.9), rel=5e-3)
     half = hovering(thin).duration / 2
-    assert hovering(lambda time: thin if time < half else thick).energy == pytest.approx((one + other) / 2, rel=5e-3)
+    assert hovering(lambda time: thin if time < half else thick).energy.battery == pytest.approx(
+        (one + other) / 2, rel=5e-3
+    )
 
 
 @pytest.mark.parametrize(("diameter", "outcome"), [(0.9, "arrived"), (1.02, "arrived"), (1.03, "crashed")])

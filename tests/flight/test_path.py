@@ -8,6 +8,7 @@ from places import EXACT, SKY, straight
 from scipy.spatial.transform import Rotation
 
 from uavlab.flight import OffsetProcess, Wind, fly, monte_carlo
+from uavlab.flight.disturbance import gust_deviations
 from uavlab.flight.motion import speed_at, steps_to_goal
 from uavlab.flight.path import BANK, BRAKING, CREEP, TURN_JUMP, level_thrust, planned_speed, why_grounded
 from uavlab.flight.simulation import setup_of
@@ -15,7 +16,7 @@ from uavlab.resilience import ADVANCED, Controller
 from uavlab.route import Route
 from uavlab.spline import Curve
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR, RISK_QUADROTOR
-from uavlab.weather import rain_force, reachable_ground_speed
+from uavlab.weather import Weather, grounded_by, rain_force, reachable_ground_speed
 
 CALM = Wind(gusts="none")
 BREEZE = Wind((-3.0, 5.0, 0.5), rain_mm_per_h=20.0)
@@ -104,46 +105,59 @@ def test_head_wind_slows_to_what_the_top_speed_leaves():
     assert durations[0] > 1.4 * durations[1]  # 3 m/s in place of 5
 
 
-WEAK = replace(LIGHT_QUADROTOR, thrust=15.5)
+WEAK = replace(LIGHT_QUADROTOR, thrust=17.0, max_tilt=np.radians(20))
 SLOW = replace(LIGHT_QUADROTOR, top_speed=6.0)
 
 
 @pytest.mark.parametrize(
     ("uav", "wind", "reason"),
     [
-        (WEAK, Wind((0, 14.0)), "pushes with 7.2 N, the thrust left over holds 4.9 N: 2.3 N short"),
-        (SLOW, Wind((1, 7.0)), "crosswind of 7.0 m/s on leg 0, the top speed is 6 m/s"),
-        (SLOW, Wind((-7, 0.0)), "head wind of 7.0 m/s on leg 0, the top speed is 6 m/s"),
+        (LIGHT_QUADROTOR.loaded(1.2), CALM, "lift: 1.14 N short of 1.1 times weight and rain"),
+        (WEAK, Wind((0, 10.0)), "gusts: 13.0 m/s, and the thrust left over holds 12.1 m/s"),
+        (SLOW, Wind((-1, 7.0)), "head wind: 7.1 m/s of 6.0 m/s air speed leave less than 0.1 m/s"),
+        (LIGHT_QUADROTOR, Wind((0, 9.0), "dryden"), ""),
     ],
-    ids=["thrust", "crosswind", "head wind"],
+    ids=["lift", "gusts", "head wind", "none"],
 )
-def test_wind_that_cannot_be_held_grounds_with_the_margin(uav, wind, reason):
-    found = why_grounded(straight(), uav, wind)
-    assert found.endswith(reason)
+def test_one_rule_grounds_flights_and_weather(uav, wind, reason):
+    """What `grounded_by` says of a weather with this wind and its gusts."""
+    found = why_grounded(uav, wind, 30.0)
+    assert found == reason
+    gust = wind.speed + 3 * gust_deviations(wind, 30.0)[0]
+    weather = Weather(forecast_wind=wind.speed, forecast_max_wind=gust)
+    by_weather = grounded_by(uav, weather, ground_speed=CREEP)
+    assert bool(by_weather) == bool(found)
     flight = fly(straight(), SKY, uav, wind, rng=0)
+    assert fly(straight(), SKY, uav, wind, replace(EXACT, heeds_limits=False), rng=0).duration > 0
+    if not found:
+        assert flight.outcome == "arrived"
+        return
     flights = monte_carlo(straight(), SKY, uav, wind, rng=0, flights=3)
     assert (flight.outcome, flight.reason) == ("grounded", found)
     assert (flights.outcome.tolist(), flights.reason) == (["grounded"] * 3, found)
-    assert (flight.duration, flight.energy, len(flight.log), flight.clearance) == (0.0, 0.0, 0, np.inf)
+    assert (flight.duration, flight.energy, len(flight.log), flight.clearance) == (0.0, None, 0, np.inf)
     assert not flights.crashed.any()
     assert flights.samples.shape == (0, 2)
     assert repr(flight) == f"<Flight: grounded: {found}>"
 
 
-def test_the_margin_is_reserve_less_drag_and_ends_where_it_is_used_up():
-    reserve = np.sqrt(15.5**2 - (WEAK.weight + rain_force(30, WEAK.rain_area)) ** 2)
-    assert np.subtract(*level_thrust(WEAK, Wind(rain_mm_per_h=30))) == pytest.approx(reserve)
-    most = np.sqrt(reserve / (0.5 * 1.225 * WEAK.drag_area))
-    assert why_grounded(straight(), WEAK, Wind((0, 0.999 * most), rain_mm_per_h=30)) == ""
-    assert "crosswind" in why_grounded(straight(), WEAK, Wind((0, most - 1e-6), rain_mm_per_h=30))  # it gets nowhere
-    assert "0.0 N short" in why_grounded(straight(), WEAK, Wind((0, most + 1e-6), rain_mm_per_h=30))
+def test_the_limit_of_gusts_ends_where_the_reserve_is_used_up():
+    reserve = WEAK.horizontal_reserve(rain_force(30, WEAK.rain_area))
+    assert level_thrust(WEAK, Wind(rain_mm_per_h=30))[0] == pytest.approx(reserve)
+    most = np.sqrt(reserve / (0.5 * 1.225 * WEAK.drag_area)) - 3.0  # gusts of σ = 1 m/s
+    assert why_grounded(WEAK, Wind((0, most - 1e-6), rain_mm_per_h=30), 30.0) == ""
+    assert why_grounded(WEAK, Wind((0, most + 1e-6), rain_mm_per_h=30), 30.0).startswith("gusts: ")
 
 
-def test_only_the_leg_into_the_wind_grounds():
-    triangle = Route([(20, 100, 50), (60, 100, 50), (60, 140, 50), (20, 140, 50)])
-    assert why_grounded(triangle, SLOW, Wind((5, 0))) == ""
-    assert "on leg 1," in why_grounded(triangle, SLOW, Wind((6.5, 0)))
-    assert "head wind of 6.0 m/s on leg 0" in why_grounded(Route(triangle.points[2:]), SLOW, Wind((5.95, 0)))
+@pytest.mark.parametrize("slope", [1.0, -1.0, 0.1, -0.3])
+def test_it_climbs_and_sinks_no_faster_than_it_can(slope):
+    route = Route([(50, 50, 50), (50 + 40, 50, 50 + 40 * slope)])
+    path = planned_speed(route, LIGHT_QUADROTOR, CALM, 15.0)
+    limit = LIGHT_QUADROTOR.climb_speed if slope > 0 else LIGHT_QUADROTOR.sink_speed
+    vertical = path.on_legs[0] * abs(path.direction[0, 2])
+    assert vertical == pytest.approx(min(limit, 15.0 * abs(path.direction[0, 2])))
+    flight = fly(route, SKY, LIGHT_QUADROTOR, CALM, replace(EXACT, speed=15.0), rng=0)
+    assert abs(np.diff(flight.position[:, 2])).max() / 0.02 < 1.1 * limit
 
 
 @pytest.mark.parametrize("seed", range(4))

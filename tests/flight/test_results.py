@@ -85,7 +85,7 @@ def grounded():
     [
         (lambda: crash_rate([]), r"runs must be at least one, with as many flights each"),
         (lambda: crash_rate([flights_of([0, 1]), flights_of([0])]), r"runs must be at least one, with as many"),
-        (lambda: crash_rate(grounded()), r"runs\[0\] is grounded \(head wind of 9.0 m/s .*\), and what never flew"),
+        (lambda: crash_rate(grounded()), r"runs\[0\] is grounded \(head wind: 9.0 m/s .*\), and what never flew"),
         (lambda: crash_rate([flights_of([0, 1]), grounded()]), r"runs\[1\] is grounded"),
         (lambda: crash_rate([made()]), r"runs\[0\] must be a Flights, got Flight: monte_carlo"),
         (lambda: crash_rate([flights_of([0]), 3.0]), r"runs\[1\] must be a Flights, got float"),

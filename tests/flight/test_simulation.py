@@ -12,7 +12,7 @@ from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, Wind, cras
 from uavlab.flight.simulation import setup_of, start_of
 from uavlab.offsets import collision_probability, offset_paths, safety_domain
 from uavlab.planners import astar, hazard_astar, repare
-from uavlab.resilience import ADVANCED, ConditionCheck, Controller, Monitor, safe_distance
+from uavlab.resilience import ADVANCED, BASIC, ConditionCheck, Controller, Monitor, safe_distance
 from uavlab.risk import reference_campus
 from uavlab.route import Route
 from uavlab.spline import Curve
@@ -76,9 +76,8 @@ def test_each_flight_can_be_flown_alone(case):
         assert flight.outcome == flights.outcome[number]
         assert flight.duration == flights.duration[number]
         assert np.array_equal(flight.position[-1], flights.place[number])
-        assert np.array_equal(
-            [flight.energy, flight.clearance], [flights.energy[number], flights.clearance[number]], True
-        )
+        battery = NAN if flight.energy is None else flight.energy.battery
+        assert np.array_equal([battery, flight.clearance], [flights.energy[number], flights.clearance[number]], True)
         kept = flights.offsets[number][np.isfinite(flights.offsets[number, :, 0])]
         assert np.array_equal(flight.offset[:-1:50], kept)
 
@@ -162,7 +161,7 @@ def test_without_offsets_the_route_is_flown_exactly():
     assert np.array_equal(flight.position, flight.reference)
     mean = fly(straight(), SKY, UAV, OffsetProcess(0.0, mean=(0.0, 2.0, -1.0)), rng=0)
     assert mean.offset == pytest.approx(np.tile([0, 2, -1], (len(mean.log), 1)))
-    assert np.isnan(mean.energy)
+    assert mean.energy is None
     assert np.isnan(mean.column("thrust")).all()
 
 
@@ -237,14 +236,14 @@ def strategies(request):
 
 def test_adapting_crashes_less_and_takes_longer(strategies):
     fixed, adaptive = crash_rate(strategies["fixed"]), crash_rate(strategies["adaptive"])
-    assert adaptive.high < 0.5 * fixed.low
+    assert adaptive.high < 0.75 * fixed.low  # 275 and 508 in the wind, whose gusts no control holds
     times = [flights.duration[flights.outcome == "arrived"].mean() for flights in strategies.values()]
     assert times[1] > 1.3 * times[0]
 
 
 def test_landing_crashes_least_and_seldom_arrives(strategies):
     grounded = strategies["grounded"]
-    assert grounded.crashed.sum() <= 4  # before the monitor has looked
+    assert grounded.crashed.sum() <= 16  # before the monitor has looked, or where GPS errs
     landed = grounded.outcome == "landed"
     assert landed.sum() > 300
     assert np.median(grounded.duration[landed]) < 20
@@ -300,7 +299,7 @@ def test_offsets_and_their_speeds_are_handed_over_in_metres():
     setup, _ = setup_of(route, city, UAV, SWAY, EXACT, 0.02)
     old = setup.model(OffsetProcess((1.0, 2.0, 0.5), mean=(0.1, 0, 0)), EXACT.controller, setup.path)
     new = setup.model(OffsetProcess((1.5, 0.0, 0.5)), ADVANCED, setup.path)
-    state = start_of(setup)
+    state = start_of(setup.path.points[0])
     state.lags[:] = [(0.4, 0.3), (1.0, 1.0), (-2.0, 0.5)]
     old.hand_over(state, new)
     smaller = 1.6**-1.5
@@ -454,7 +453,9 @@ def counting(**options):
         (lambda: Autopilot(interval=-1), r"interval must be finite and above 0, got -1"),
         (lambda: Autopilot(strategy="brave"), r"strategy must be one of 'adaptive', 'grounded', 'fixed', got 'brave'"),
         (lambda: Autopilot(gps=Gps(rate=0)), r"gps.rate must be finite and above 0, got 0"),
-        (lambda: Autopilot(gps=Gps(position=-1)), r"gps.position must be finite and at least 0, got -1"),
+        (lambda: Autopilot(gps=Gps(drift=-1)), r"gps.drift must be finite and at least 0, got -1"),
+        (lambda: Autopilot(gps=Gps(correlation=0)), r"gps.correlation must be finite and above 0, got 0"),
+        (lambda: Autopilot(controller=BASIC._replace(tilt_share=1.5)), "controller.tilt_share must be at most 1"),
         (lambda: Autopilot(gps=Gps(velocity=NAN)), r"gps.velocity must be finite"),
         (lambda: Autopilot(Controller("lame", 0, 1)), r"controller.speed_share must be finite and above 0, got 0"),
         (lambda: Autopilot(Controller("lame", 1, 0)), r"controller.natural_frequency must be finite and above 0"),
