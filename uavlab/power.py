@@ -139,4 +139,6 @@ def power_needed(
     across = np.sqrt(np.maximum((through_air**2).sum(axis=-1) - through**2, 0.0))
     hover = np.sqrt(pulled / (2 * air_density * uav.rotor_area))
     parts = np.vectorize(rotor_power, otypes=[float] * 3)(pulled, hover, through, across, profile_share(uav))
-    return Power(*parts, np.maximum(sum(parts), 0.0) / uav.drive_efficiency)
+    induced, profile, useful = parts
+    battery = np.maximum(induced + profile + useful, 0.0) / uav.drive_efficiency
+    return Power(induced, profile, useful, battery)

@@ -51,7 +51,7 @@ def model_of(
         spring = Spring(np.array(now.mean), sigma, keep, enter, controller.natural_frequency, controller.speed_share)
         return Model(drift_on, (spring,), controller.speed_share)
     gps = autopilot.gps
-    keep = float(np.exp(-1 / (gps.rate * gps.correlation)))
+    remaining = float(np.exp(-1 / (gps.rate * gps.correlation)))
     body = Body(
         mass=uav.weight / GRAVITY,
         thrust=uav.thrust,
@@ -66,8 +66,8 @@ def model_of(
         omega=controller.natural_frequency,
         pace=controller.speed_share,
         gps_fixes=gps.rate * time_step,
-        gps_keep=keep,
-        gps_enter=np.sqrt(1 - keep**2) * np.array([gps.drift, gps.drift, gps.vertical_drift]),
+        gps_keep=remaining,
+        gps_enter=np.sqrt(1 - remaining**2) * np.array([gps.drift, gps.drift, gps.vertical_drift]),
         gps_velocity=gps.velocity,
     )
     return Model(

@@ -12,12 +12,21 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.spline.curve import BANK, CONTACT, Curve, checked_bank
+from uavlab.spline.curve import BANK, CONTACT, Curve, checked_bank, curvature
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import wind_drag
 
 MAX_PITCH = np.pi / 3
 """θ_max of RISK-ACO; PSO-BAS asks for π/4."""
+
+MAX_TURN = np.pi / 3
+"""Δψ_max of RISK-ACO, over a voxel's length; PSO-BAS leaves it open."""
+
+LEVEL = 0.1
+"""Of the direction: where less of it is level, as in a steep climb, there is no heading."""
+
+OUTSIDE = 1e-3
+"""Who is so far from a no-fly zone is outside of it [m]."""
 
 LEAST_SPEED, TRIED = 0.001, 65
 """`greatest_speed` tells a millimetre per second, and looks at so many speeds first."""
@@ -113,10 +122,17 @@ def feasibility(
     wind: npt.ArrayLike = (0.0, 0.0, 0.0),
     bank: float = BANK,
     max_pitch: float = MAX_PITCH,
+    max_turn: float | None = None,
     min_clearance: float | None = None,
+    min_height: float = 0.0,
+    max_height: float = np.inf,
+    safe_height: float = 0.0,
     as_printed: bool = False,
+    reading: str = "plan",
 ) -> Feasibility:
     """Check a curve against what a UAV can do, at a constant speed over ground; but for take-off and landing.
+
+    Whatever is measured between the curve's points is bounded, not sampled.
 
     Parameters
     ----------
@@ -131,17 +147,29 @@ def feasibility(
         Bank angle that turns may take [rad], between 0 and π/2; limits the level curvature to g·tan(bank)/v².
     max_pitch : float
         Steepest climb or descent [rad], above 0, at most π/2.
+    max_turn : float, optional
+        Greatest change of heading over a voxel's length [rad], above 0, at most π (PSO-BAS Eq. 9); by default none, as
+        the curvature's limit knows the speed; with `as_printed` π/3, RISK-ACO's.
     min_clearance : float, optional
         Least distance to obstacles [m]; by default half the body, less the 2 % of contact that `smooth` allows.
+    min_height, max_height : float
+        Least and greatest height above ground [m].
+    safe_height : float
+        H_safe, least height above roofs and ground below [m] (PSO-BAS Eq. 11).
     as_printed : bool
-        RISK-ACO's and PSO-BAS's own check: curvature below 1 per voxel, pitch within `max_pitch`. It doesn't know the
-        speed.
+        RISK-ACO's and PSO-BAS's own check: curvature below 1 per voxel, heading and pitch within their limits. It
+        knows neither the speed nor the city.
+    reading : {"plan", "space"}
+        Of the printed curvature: in plan, as turns have a limit of their own "in the horizontal direction", or of the
+        track in space.
 
     Returns
     -------
     Feasibility
-        "clearance" [m], "curvature" [1/m], "pitch" [°], "thrust" [N] and "tilt" [°] that hold weight, wind and turn,
-        "air speed" [m/s].
+        "clearance", "map" (how far inside of it) and "height" above ground [m], "curvature" [1/m], "pitch" [°],
+        "thrust" [N] and "tilt" [°] that hold weight, wind and turn, "air speed" [m/s]; where they are limited also
+        "height at most", "height above roofs" and "distance to no-fly zones" [m], "heading change" [° per voxel],
+        "climb rate" and "sink rate" [m/s].
 
     Raises
     ------
@@ -158,30 +186,114 @@ def feasibility(
     pitch = np.degrees(np.abs(curve.pitch))
     checks.positive_number("max_pitch", max_pitch)
     checks.within("max_pitch", max_pitch, 0.0, np.pi / 2, "rad (from degrees: numpy.radians)")
+    checks.one_of("reading", reading, ("plan", "space"))
+    turned = limits_of_turn(curve, city, MAX_TURN if max_turn is None and as_printed else max_turn)
     steepest = upper(curve, "pitch", "°", np.degrees(max_pitch), pitch)
     if as_printed:
-        per_voxel = upper(curve, "curvature", "per voxel", 1.0, curve.curvature * city.cell)
-        return feasibility_after(begins, (per_voxel, steepest), speed)
+        bends = plan_curvature(curve) if reading == "plan" else curve.curvature
+        per_voxel = upper(curve, f"curvature in {reading}", "per voxel", 1.0, bends * city.cell)
+        return feasibility_after(begins, (per_voxel, *turned, steepest), speed)
     sharpest = GRAVITY * np.tan(checked_bank(bank)) / speed**2
     thrust, tilt = tilted_thrust(curve, uav, speed, wind)
     air_speed = np.linalg.norm(speed * curve.tangent - checks.three("wind", wind), axis=1)
     body = (1 - CONTACT) * uav.diameter / 2 if min_clearance is None else min_clearance
     checks.not_negative_number("min_clearance", body)
-    distances = curve.least_distances(city)
-    least = float(distances.min())
-    nearest = int(np.flatnonzero(distances <= (1 + 1e-9) * least)[0])
     return feasibility_after(
         begins,
         (
-            Limit("clearance", "m", body, least, True, *whereabouts(curve, nearest)),
+            lower(curve, "clearance", "m", body, curve.least_distances(city)),
+            *limits_of_place(curve, city, min_height, max_height, safe_height),
             upper(curve, "curvature", "1/m", sharpest, curve.level_curvature),
+            *turned,
             steepest,
             upper(curve, "thrust", "N", uav.thrust, thrust),
             upper(curve, "tilt", "°", np.degrees(uav.max_tilt), np.degrees(tilt)),
             upper(curve, "air speed", "m/s", uav.top_speed, air_speed),
+            *limits_of_climb(curve, uav, speed),
         ),
         float(speed),
     )
+
+
+def limits_of_place(
+    curve: Curve, city: City, min_height: float, max_height: float, safe_height: float
+) -> tuple[Limit, ...]:
+    """The map's box, heights above ground and roofs, no-fly zones: where a UAV may be."""
+    city.blocked(min_height=min_height, max_height=max_height)  # refuses what is out of range
+    checks.not_negative_number("safe_height", safe_height)
+    fine = curve if curve.step <= city.cell else replace(curve, step=city.cell)
+    low, high = city.bounds
+    ends = np.minimum(fine.points - low, high - fine.points).min(axis=1)
+    inside = np.minimum(ends[:-1], ends[1:]) - fine.sagitta
+    lowest, highest = city.range_of_ground
+    limits = [
+        lower(fine, "map", "m", 0.0, inside),
+        lower(fine, "height", "m", min_height, heights_over(fine, city, highest[..., None])),
+    ]
+    if max_height < np.inf:
+        above = -heights_over(fine, city, lowest[..., None], highest=True)
+        limits.append(upper(fine, "height at most", "m", max_height, np.append(above, above[-1])))
+    if safe_height > 0:
+        limits.append(lower(fine, "height above roofs", "m", safe_height, heights_over(fine, city, city.surface_below)))
+    if city.no_fly:
+        zones = City(city.in_no_fly, city.cell, city.origin)
+        limits.append(lower(fine, "distance to no-fly zones", "m", OUTSIDE, fine.least_distances(zones)))
+    return tuple(limits)
+
+
+def limits_of_turn(curve: Curve, city: City, max_turn: float | None) -> tuple[Limit, ...]:
+    """Of the heading over a voxel's length, if there is one."""
+    if max_turn is None:
+        return ()
+    checks.positive_number("max_turn", max_turn)
+    checks.within("max_turn", max_turn, 0.0, np.pi, "rad (from degrees: numpy.radians)")
+    return (upper(curve, "heading change", "° per voxel", np.degrees(max_turn), heading_change(curve, city.cell)),)
+
+
+def limits_of_climb(curve: Curve, uav: UAV, speed: float) -> tuple[Limit, ...]:
+    """Vertical speeds, where the UAV has limits for them."""
+    climb = speed * curve.tangent[:, 2]
+    rates = (("climb rate", uav.climb_speed, climb), ("sink rate", uav.sink_speed, -climb))
+    return tuple(upper(curve, name, "m/s", most, rate) for name, most, rate in rates if most < np.inf)
+
+
+def heights_over(curve: Curve, city: City, surface: np.ndarray, *, highest: bool = False) -> np.ndarray:
+    """Least height of a curve above a surface (nx, ny, 1 or nz) [m] between each two of its points, (P − 1,) [m].
+
+    Over all columns that it may touch in between, however it bends; steps must not be longer than a voxel. With
+    `highest` how far it is below the surface at the least.
+    """
+    one, other, side = curve.points[:-1], curve.points[1:], curve.sagitta[:, None]
+    west, east = np.minimum(one, other)[:, :2] - side, np.maximum(one, other)[:, :2] + side
+    z = np.maximum(one, other)[:, 2] + curve.rise if highest else np.minimum(one, other)[:, 2] - curve.rise
+    room = np.full(len(z), np.inf)
+    for x in (west[:, 0], east[:, 0]):
+        for y in (west[:, 1], east[:, 1]):
+            index = ((np.stack([x, y, z], axis=1) - city.origin) // city.cell).astype(int)
+            i, j, k = np.clip(index, 0, np.array(surface.shape) - 1).T
+            room = np.minimum(room, surface[i, j, k] - z if highest else z - surface[i, j, k])
+    return room
+
+
+def heading_change(curve: Curve, cell: float) -> np.ndarray:
+    """By how much the heading turns over the next `cell` metres, (P,) [°]; it has none where it is nearly vertical."""
+    east, north = curve.tangent[:, 0], curve.tangent[:, 1]
+    level = np.flatnonzero(np.hypot(east, north) > LEVEL)
+    turned = np.zeros(len(east))
+    if len(level) > 1:
+        heading = np.unwrap(np.arctan2(north[level], east[level]))
+        distance = curve.distance[level]
+        there = np.interp(distance + cell, distance, heading)
+        last = np.searchsorted(distance, distance + cell, side="right")
+        turned[level] = [np.ptp([*heading[n : last[n]], there[n]]) for n in range(len(level))]
+    return np.degrees(turned)
+
+
+def plan_curvature(curve: Curve) -> np.ndarray:
+    """Curvature of the curve's plan, (P,) [1/m]; infinite at a corner, 0 where it is vertical."""
+    sharp = np.isinf(curve.bend).any(axis=1)
+    bend = np.where(sharp[:, None], 0.0, curve.bend)
+    return np.where(sharp, np.inf, np.nan_to_num(curvature(curve.tangent[:, :2], bend[:, :2])))
 
 
 def feasibility_after(begins: float, limits: tuple[Limit, ...], speed: float) -> Feasibility:
@@ -192,8 +304,17 @@ def feasibility_after(begins: float, limits: tuple[Limit, ...], speed: float) ->
 def upper(curve: Curve, name: str, unit: str, limit: float, values: np.ndarray) -> Limit:
     """An upper limit and where the values (P,) at the curve's points are worst."""
     worst = float(values.max())
-    first = int(np.flatnonzero(values >= (1 - 1e-9) * worst)[0])  # of equals, whatever the rounding
+    slack = 1e-9 * abs(worst) if np.isfinite(worst) else 0.0
+    first = int(np.flatnonzero(values >= worst - slack)[0])  # of equals, whatever the rounding
     return Limit(name, unit, float(limit), worst, False, *whereabouts(curve, first))
+
+
+def lower(curve: Curve, name: str, unit: str, limit: float, values: np.ndarray) -> Limit:
+    """A lower limit and where the values (P − 1,) between the curve's points are worst."""
+    least = float(values.min())
+    slack = 1e-9 * abs(least) if np.isfinite(least) else 0.0
+    nearest = int(np.flatnonzero(values <= least + slack)[0])
+    return Limit(name, unit, float(limit), least, True, *whereabouts(curve, nearest))
 
 
 def whereabouts(curve: Curve, number: int) -> tuple[float, tuple[float, ...]]:
@@ -231,7 +352,7 @@ def tilted_thrust(
 
 
 def greatest_speed(curve: Curve, uav: UAV, wind: npt.ArrayLike = (0.0, 0.0, 0.0), *, bank: float = BANK) -> float:
-    """The greatest constant speed over ground [m/s] at which bank, thrust, tilt and air speed stay within limits.
+    """The greatest constant speed over ground [m/s] at which bank, thrust, tilt, air and vertical speed are in limits.
 
     Between take-off and landing; 0 when there is none, as at a corner; to a millimetre per second. In a strong tail
     wind a UAV may have to be fast: the speeds that work needn't begin at 0. Of ranges of speeds that work only one
@@ -248,7 +369,15 @@ def greatest_speed(curve: Curve, uav: UAV, wind: npt.ArrayLike = (0.0, 0.0, 0.0)
     either_way = np.sqrt(uav.top_speed**2 - across)
     sharpest = curve.level_curvature.max()
     banked = np.sqrt(GRAVITY * np.tan(bank) / sharpest) if sharpest > 0 else np.inf
-    slowest, fastest = max((along - either_way).max(), LEAST_SPEED), min((along + either_way).min(), banked)
+    vertical = [
+        most / steepest
+        for most, steepest in (
+            (uav.climb_speed, curve.tangent[:, 2].max()),
+            (uav.sink_speed, -curve.tangent[:, 2].min()),
+        )
+        if steepest > 0
+    ]
+    slowest, fastest = max((along - either_way).max(), LEAST_SPEED), min((along + either_way).min(), banked, *vertical)
     if not fastest >= slowest:
         return 0.0
 
