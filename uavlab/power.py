@@ -14,13 +14,16 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.compiled import compiled
 from uavlab.vehicle import INDUCED, STANDARD_AIR, UAV
-from uavlab.weather import rain_force, wind_drag
+from uavlab.weather import ground_speed_held, rain_force, wind_drag
 
 BLADE_LOADING = 0.012
 """Thrust coefficient T/(ρ A U²), tip speed U; of small rotors 0.01 to 0.015, whatever they pull, as U follows."""
 
 ADVANCE = 4.65
 """By how much the drag of blades grows with the square of the advance ratio V/U (Leishman 2006, 5.4)."""
+
+CREEP = 0.1
+"""Who is slower than this over ground gets nowhere [m/s]."""
 
 NEWTON = 12
 """Steps of Newton's method at most; four or five are enough."""
@@ -142,3 +145,54 @@ def power_needed(
     induced, profile, useful = parts
     battery = np.maximum(induced + profile + useful, 0.0) / uav.drive_efficiency
     return Power(induced, profile, useful, battery)
+
+
+def energy_per_metre(
+    uav: UAV,
+    direction: npt.ArrayLike,
+    wind: npt.ArrayLike = (0.0, 0.0, 0.0),
+    *,
+    speed: float | None = None,
+    rain_mm_per_h: float = 0.0,
+    air_density: float = STANDARD_AIR,
+) -> np.ndarray:
+    """Energy from the battery for a metre of way in a direction, at the speed at which that is planned.
+
+    P/v of steady flight, v as fast as asked or as `ground_speed_held` allows: dear against the wind, as it takes long.
+
+    Parameters
+    ----------
+    uav : UAV
+    direction : (..., 3) array
+        Any length but 0.
+    wind, rain_mm_per_h, air_density
+        As for `power_needed`.
+    speed : float, optional
+        Over ground, if nothing limits it [m/s]; by default the UAV's cruise speed.
+
+    Returns
+    -------
+    (...) array
+        [J/m], at least 0; infinite where the wind leaves no way.
+
+    Raises
+    ------
+    ValueError
+        If a direction has no length, or an argument is out of its range.
+    """
+    checks.instance("uav", uav, UAV)
+    asked = uav.cruise_speed if speed is None else speed
+    checks.positive_number("speed", asked)
+    checks.positive_number("air_density", air_density)
+    (course,) = checks.vectors(direction=direction)
+    size = np.linalg.norm(course, axis=-1, keepdims=True)
+    if course.shape[-1:] != (3,) or (size == 0).any():
+        raise ValueError(f"direction must have shape (..., 3) and a length above 0, got shape {course.shape}")
+    unit = course / size
+    held = ground_speed_held(uav, unit, wind, rain_mm_per_h=rain_mm_per_h, air_density=air_density)
+    ground_speed = np.minimum(held, asked)
+    slow = ground_speed < CREEP
+    ground_speed = np.where(slow, asked, ground_speed)
+    velocity = ground_speed[..., None] * unit
+    power = power_needed(uav, velocity, wind, rain_mm_per_h=rain_mm_per_h, air_density=air_density)
+    return np.where(slow, np.inf, power.battery / ground_speed)

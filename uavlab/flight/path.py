@@ -8,7 +8,7 @@ from uavlab.flight.disturbance import Wind, gust_deviations
 from uavlab.route import Route
 from uavlab.spline.curve import BANK
 from uavlab.vehicle import GRAVITY, UAV
-from uavlab.weather import air_speed_held, rain_force, wind_drag
+from uavlab.weather import ground_speed_held, rain_force, wind_drag
 from uavlab.weather.envelope import limits_broken
 
 TURN_JUMP = 1.0
@@ -16,9 +16,6 @@ TURN_JUMP = 1.0
 
 BRAKING = 2.0
 """Along the route [m/s²]."""
-
-CRUISE = 0.8
-"""Share of the thrust left over sideways that steady drag may take; the rest is for gusts and turns."""
 
 LEAST_AGILITY = 0.1
 """Of a UAV that a wind which came in flight leaves nothing [m/s²]."""
@@ -53,7 +50,9 @@ def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
     mass = uav.weight / GRAVITY
     held, pushed = level_thrust(uav, wind)
     agility = max(min(GRAVITY * np.tan(BANK), 0.5 * (held - pushed) / mass), LEAST_AGILITY)
-    held_there = np.minimum(ground_speed_held(uav, wind, direction, CRUISE), vertical_speed_held(uav, direction))
+    held_there = ground_speed_held(
+        uav, direction, wind.mean, rain_mm_per_h=wind.rain_mm_per_h, air_density=wind.air_density
+    )
     on_legs = np.clip(held_there, CREEP, max(speed, CREEP))
     at_points = np.full(len(points), CREEP)
     turn = np.arccos(np.clip((direction[:-1] * direction[1:]).sum(axis=1), -1.0, 1.0))
@@ -85,21 +84,6 @@ def level_thrust(uav: UAV, wind: Wind) -> tuple[float, float]:
     held = float(uav.horizontal_reserve(rain_force(wind.rain_mm_per_h, uav.rain_area)))
     drag = wind_drag(wind.mean, (0.0, 0.0, 0.0), uav.drag_area, air_density=wind.air_density)
     return held, float(np.linalg.norm(drag))
-
-
-def ground_speed_held(uav: UAV, wind: Wind, direction: np.ndarray, share: float = 1.0) -> np.ndarray:
-    """Greatest steady speed over ground on each leg (L, 3), (L,) [m/s]; −∞ where the wind blows it off its course."""
-    rain = float(rain_force(wind.rain_mm_per_h, uav.rain_area))
-    fastest = air_speed_held(uav, rain, air_density=wind.air_density, share=share)
-    along = direction @ wind.mean
-    across = np.sqrt(np.maximum(wind.speed**2 - along**2, 0.0))
-    return np.where(across < fastest, along + np.sqrt(np.maximum(fastest**2 - across**2, 0.0)), -np.inf)
-
-
-def vertical_speed_held(uav: UAV, direction: np.ndarray) -> np.ndarray:
-    """Greatest speed on each leg (L, 3) for which it climbs and sinks no faster than it can, (L,) [m/s]."""
-    with np.errstate(divide="ignore"):
-        return np.where(direction[:, 2] > 0, uav.climb_speed, uav.sink_speed) / np.abs(direction[:, 2])
 
 
 def why_grounded(uav: UAV, wind: Wind, altitude: float) -> str:

@@ -4,6 +4,7 @@ from uavlab.planners.ant_colony import ant_colony
 from uavlab.planners.astar import astar, penalty_zone
 from uavlab.planners.comparison import Comparison, compare_planners, optimality_gap
 from uavlab.planners.hazard import hazard_astar, hazard_price
+from uavlab.planners.least_energy import least_energy
 from uavlab.planners.least_risk import least_risk, pareto_front
 from uavlab.planners.potential_field import potential_field, potential_forces, repulsion
 from uavlab.planners.repare import flight_conditions, repare, repare_price
@@ -18,6 +19,7 @@ __all__ = [
     "flight_conditions",
     "hazard_astar",
     "hazard_price",
+    "least_energy",
     "least_risk",
     "optimality_gap",
     "pareto_front",

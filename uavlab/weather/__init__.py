@@ -1,6 +1,13 @@
 """Weather: states of it, the forces they make, turbulence, the flight envelope, and real records."""
 
-from uavlab.weather.envelope import air_speed_held, course_wind_limit, grounded_by, mean_wind_limit, wind_limit
+from uavlab.weather.envelope import (
+    air_speed_held,
+    course_wind_limit,
+    ground_speed_held,
+    grounded_by,
+    mean_wind_limit,
+    wind_limit,
+)
 from uavlab.weather.forces import (
     ReferenceWind,
     Weather,
@@ -25,6 +32,7 @@ __all__ = [
     "dryden_parameters",
     "dryden_spectrum",
     "greensboro_weather",
+    "ground_speed_held",
     "grounded_by",
     "lift_margin",
     "mean_wind_limit",

@@ -12,6 +12,9 @@ from uavlab import checks
 from uavlab.vehicle import UAV
 from uavlab.weather.forces import GUST_FACTOR, SAFETY_FACTOR, STANDARD_AIR, Weather, lift_margin, rain_force
 
+CRUISE = 0.8
+"""Share of the thrust left over sideways that steady drag may take on a planned flight."""
+
 
 def wind_limit(
     uav: UAV,
@@ -139,6 +142,49 @@ def air_speed_held(uav: UAV, rain: float = 0.0, *, air_density: float = STANDARD
     """
     held = share * float(uav.horizontal_reserve(rain))
     return min(uav.top_speed, float(np.sqrt(2.0 * held / (air_density * uav.drag_area))))
+
+
+def ground_speed_held(
+    uav: UAV,
+    direction: npt.ArrayLike,
+    wind: npt.ArrayLike = (0.0, 0.0, 0.0),
+    *,
+    rain_mm_per_h: float = 0.0,
+    air_density: float = STANDARD_AIR,
+    share: float = CRUISE,
+) -> np.ndarray:
+    """Greatest steady speed over ground along directions, at which a flight is planned.
+
+    The wind triangle (`reachable_ground_speed`) at `air_speed_held`, and no faster up and down than the UAV can.
+
+    Parameters
+    ----------
+    uav : UAV
+    direction : (..., 3) array
+        Unit vectors.
+    wind : (2,) or (3,) array
+        Mean wind, where the air moves to [m/s].
+    rain_mm_per_h : float
+        [mm/h]
+    air_density : float
+        ρ [kg/m³], above 0.
+    share : float
+        Of the horizontal reserve that steady drag may take; the rest is for gusts and turns.
+
+    Returns
+    -------
+    (...) array
+        [m/s]; −∞ where the wind blows it off its course.
+    """
+    mean, along_it = np.array(checks.three("wind", wind)), checks.numbers("direction", direction)
+    rain = float(rain_force(rain_mm_per_h, uav.rain_area))
+    fastest = air_speed_held(uav, rain, air_density=air_density, share=share)
+    along = along_it @ mean
+    across = np.sqrt(np.maximum((mean**2).sum() - along**2, 0.0))
+    level = np.where(across < fastest, along + np.sqrt(np.maximum(fastest**2 - across**2, 0.0)), -np.inf)
+    with np.errstate(divide="ignore"):
+        vertical = np.where(along_it[..., 2] > 0, uav.climb_speed, uav.sink_speed) / np.abs(along_it[..., 2])
+    return np.minimum(level, vertical)
 
 
 def grounded_by(
