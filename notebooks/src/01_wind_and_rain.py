@@ -161,7 +161,7 @@ plot.finished(figure)
 # NBVAL_CHECK_OUTPUT
 from uavlab.weather import lift_margin
 
-for payload in (0.0, 0.25, 0.6, 1.0):
+for payload in (0.0, 0.25, 0.6, 1.0, 1.1):
     loaded = uav.loaded(payload)
     dry, rainy, printed = (
         lift_margin(loaded),
@@ -169,13 +169,14 @@ for payload in (0.0, 0.25, 0.6, 1.0):
         lift_margin(loaded, cloudburst, as_printed=True),
     )
     print(f"load {payload:.2f} kg: margin {dry:6.3f} N dry, {rainy:6.3f} N in 100 mm/h (printed {printed:6.3f} N)")
-heaviest = uav.thrust / (1.2 * GRAVITY) - uav.mass
-print(f"δ = 1.2 allows {heaviest:.3f} kg when it is dry, {cloudburst / GRAVITY:.3f} kg less in 100 mm/h")
-assert np.isclose(printed - rainy, 0.005)
+heaviest = uav.thrust / (1.1 * GRAVITY) - uav.mass
+print(f"δ = 1.1 allows {heaviest:.3f} kg when it is dry, {cloudburst / GRAVITY:.3f} kg less in 100 mm/h")
+assert np.isclose(printed - rainy, 0.0025)
 assert lift_margin(uav.loaded(heaviest - 1e-9)) > 0 > lift_margin(uav.loaded(heaviest + 1e-9))
 
 # %% [markdown]
-# One kilogram is too much for a safety factor of 1.2, in the best of weathers.
+# The paper gives no number for $\delta$. We take 1.1: a kilogram, the heaviest load of its Table 3, may fly then, and
+# 1.1 kg may not, in the best of weathers.
 #
 # ## Drag: REPARE Eq. 5
 #
@@ -417,12 +418,12 @@ from uavlab.weather import grounded_by, mean_wind_limit, wind_limit
 
 print("load      reserve   holds gusts   mean wind at 5 m/s over ground")
 limits = {}
-for payload in (0.0, 0.25, 0.6, 0.85, 1.0):
+for payload in (0.0, 0.25, 0.6, 1.0, 1.1):
     loaded = uav.loaded(payload)
     limits[payload] = float(mean_wind_limit(loaded, ground_speed=5))
     print(f"{payload:.2f} kg  {loaded.horizontal_reserve():5.1f} N  {wind_limit(loaded):7.1f} m/s", end="")
     print(f"   {limits[payload]:5.1f} m/s")
-assert [round(limit, 1) for limit in limits.values()] == [13.0, 13.0, 13.0, 11.9, 0.0]
+assert [round(limit, 1) for limit in limits.values()] == [13.0, 13.0, 13.0, 11.0, 0.0]
 
 # %%
 payloads = np.linspace(0, 1.3, 651)
@@ -442,7 +443,7 @@ plot.finished(figure)
 
 # %% [markdown]
 # Three limits, one after the other. A light UAV is bound by its speed. From 0.6 kg on thrust is short, since a load
-# takes it twice: by its weight, and by leaving less to tilt. At 0.88 kg the safety factor ends it, while the rotors
+# takes it twice: by its weight, and by leaving less to tilt. At 1.09 kg the safety factor ends it, while the rotors
 # could still hold a strong wind.
 #
 # And the rain? Here is the same map with rain upwards. Its contours stand nearly upright:
@@ -453,19 +454,19 @@ force = rain_force(rains, uav.rain_area)
 allowed = np.array([mean_wind_limit(loaded, force, ground_speed=5) for loaded in dry])
 figure, axes = plt.subplots(figsize=(7.2, 4.2), dpi=plot.DPI, layout="constrained")
 shown = axes.contourf(
-    payloads, rains, np.where(allowed > 0, allowed, np.nan).T, np.arange(11.5, 13.01, 0.25), cmap="cividis"
+    payloads, rains, np.where(allowed > 0, allowed, np.nan).T, np.arange(9.5, 13.01, 0.5), cmap="cividis"
 )
 figure.colorbar(shown, ax=axes, label="mean wind in which it may fly [m/s]")
 grounded = axes.contourf(payloads, rains, (allowed == 0).T.astype(float), [0.5, 1.5], colors="0.85", hatches=["//"])
-axes.text(1.09, 150, "grounded\nby its load", ha="center", va="center", backgroundcolor="white")
+axes.text(1.2, 150, "grounded\nby its load", ha="center", va="center", backgroundcolor="white")
 axes.set(xlabel="load [kg]", ylabel="rain [mm/h]")
 plot.finished(figure)
 
 # %%
 # NBVAL_CHECK_OUTPUT
-heavy = uav.loaded(0.85)
+heavy = uav.loaded(1.0)
 calm, wet = (float(wind_limit(heavy, rain_force(rate, uav.rain_area))) for rate in (0, 300))
-print(f"0.85 kg: holds gusts of {calm:.2f} m/s when dry, {wet:.2f} m/s in 300 mm/h")
+print(f"1 kg: holds gusts of {calm:.2f} m/s when dry, {wet:.2f} m/s in 300 mm/h")
 shift = rain_force(300, uav.rain_area) / GRAVITY
 print(f"300 mm/h take {1000 * shift:.1f} g from the heaviest load")
 assert calm - wet < 0.1
@@ -524,17 +525,17 @@ flights = [(speed, height) for height in (10.0, 60.0) for speed in (0, 5, 10)]
 print("height      10 m    10 m    10 m    60 m    60 m    60 m")
 print("speed     0 m/s   5 m/s  10 m/s   0 m/s   5 m/s  10 m/s")
 hours = {}
-for payload in (0.0, 0.25, 0.6, 0.85, 1.0):
+for payload in (0.0, 0.25, 0.6, 1.0, 1.1):
     hours[payload] = [hours_grounded(payload, *flight) for flight in flights]
     print(f"{payload:.2f} kg", *(f"{count:7,}" for count in hours[payload]))
 assert hours[0.0] == [1, 1, 104, 5, 17, 650]
-assert hours[0.85] == [1, 1, 104, 28, 28, 650]
-assert hours[1.0] == [8760] * 6
+assert hours[1.0] == [8, 8, 104, 52, 52, 650]
+assert hours[1.1] == [8760] * 6
 
 # %%
 speeds = np.arange(0, 17.5, 0.5)
 figure, axes = plt.subplots(figsize=(6.8, 4.0), dpi=plot.DPI, layout="constrained")
-for payload, color, style in ((0.0, BLUE, "-"), (0.85, ORANGE, "--"), (1.0, "black", ":")):
+for payload, color, style in ((0.0, BLUE, "-"), (1.0, ORANGE, "--"), (1.1, "black", ":")):
     for height, width in ((10.0, 1.2), (60.0, 2.8)):
         share = np.array([hours_grounded(payload, speed, height) for speed in speeds]) / len(year)
         axes.semilogy(speeds, 100 * share, style, color=color, linewidth=width)
@@ -547,9 +548,9 @@ axes.grid(alpha=0.3)
 plot.finished(figure)
 
 # %% [markdown]
-# Load hardly matters, until it matters entirely: 0.85 kg are grounded in as many hours as nothing at all, but for
-# slow flights high above the ground, and 1 kg in every hour of the year. What decides on the hours is the speed asked
-# for. At 5 m/s near the ground one hour in the year is too windy (0.01 %), at 10 m/s in 60 m height 650 are (7.4 %).
+# Load hardly matters, until it matters entirely. At 10 m/s a load of 1 kg is grounded in as many hours as none at all.
+# On slower flights it is grounded in a few more: 8 against 1 near the ground, 52 against 5 or 17 at 60 m. But 1.1 kg
+# are grounded in every hour of the year. What decides on the hours is the speed asked for. At 5 m/s near the ground one hour in the year is too windy (0.01 %), at 10 m/s in 60 m height 650 are (7.4 %).
 # These are hourly means over an open airfield. Between buildings it is calmer on average and rougher at corners;
 # notebook 12 flies there.
 #
@@ -559,13 +560,13 @@ plot.finished(figure)
 # NBVAL_CHECK_OUTPUT
 drags = [wind_drag((0, 0), (10, 0), 0.05, air_density=1.2, as_printed=form)[0] for form in (False, True)]
 print(f"Eq. 1: {rain_force(100, 0.1):.3f} N in 100 mm/h; printed {rain_force(100, 0.1, as_printed=True):.3f} Pa")
-print(f"Eq. 2: rain outside of the bracket: {0.2 * cloudburst:.3f} N too hopeful")
+print(f"Eq. 2: rain outside of the bracket: {0.1 * cloudburst:.4f} N too hopeful")
 print(f"Eq. 3: a gust pushes {1.75**2:.2f} times as hard as the mean wind")
 print(f"Eq. 4: {reached['from ahead']:.0f} m/s against a wind of 9 m/s; sum of speeds {18 + 9} m/s")
 print(f"Eq. 5: {abs(drags[0]):.1f} N at 10 m/s; printed {drags[1]:.1f}")
 needed = uav.thrust / uav.loaded(1.0).weight
 print(f"Table 4: 1 kg flies with a safety factor below {needed:.2f}, and then holds gusts of", end=" ")
-print(f"{wind_limit(uav.loaded(1.0), safety_factor=1.1):.1f} m/s")
+print(f"{wind_limit(uav.loaded(1.0)):.1f} m/s")
 print(f"Table 3, note 2: rain as heavy as 0.25 kg takes {0.25 * GRAVITY / rain_force(1, 0.1) / 1000:.1f} m an hour")
 assert round(needed, 2) == 1.14
 
@@ -573,12 +574,12 @@ assert round(needed, 2) == 1.14
 # | REPARE | says | we find |
 # |---|---|---|
 # | Eq. 1 | rain presses with $H \rho V (1 - \eta)/t$ | for a depth $H$ a pressure, 0 where drops stick; 0.025 N |
-# | Eq. 2 | $F_{z,\max} > \delta\,(G_\text{uav} + G_s) + F_r$ | rain belongs into the bracket; 0.005 N of difference |
+# | Eq. 2 | $F_{z,\max} > \delta\,(G_\text{uav} + G_s) + F_r$ | rain belongs into the bracket; 0.0025 N of difference |
 # | Eq. 3 | the larger of two mean winds | leaves out the gust, which pushes 3.06 times as hard |
 # | Eq. 4 | $\vec V_d \le \vec V_\text{wMax} + \vec V_\text{uav}$ | Eq. 6; 9 m/s of head wind leave 9 m/s, not 27 |
 # | Eq. 5 | drag is $\frac12 C \rho S V_d$ | no force, and blind to wind: 0.3 for 3.0 N at 10 m/s |
 # | Table 3, note 2 | heavy rain can exceed the largest load | not its force: even 0.25 kg takes 9.8 m of rain an hour |
-# | Table 4 | heavy load flies in mild wind | our 1 kg does with $\delta < 1.14$, not with 1.2 |
+# | Table 4 | heavy load flies in mild wind | our 1 kg does with $\delta < 1.14$; ours is 1.1 |
 #
 # The paper gives no vehicle, so the figures in newtons are those of ours. What doesn't depend on it: which formula has
 # which unit, and that the speed enters drag twice.

@@ -128,11 +128,11 @@ plot.finished(figure)
 
 # %%
 # NBVAL_CHECK_OUTPUT
-tumbling = replace(uav, drag_area=0.06, name="the same, tumbling")
+tumbling = replace(uav, fall_drag_area=0.06, name="the same, tumbling")
 for vehicle in (uav, tumbling):
     fallen = risk.ballistic_fall(30.0, vehicle)
     energy = risk.impact_energy(mass, fallen.forward_speed, fallen.fall_speed)
-    print(f"drag area {vehicle.drag_area:.4f} m²: terminal speed {risk.terminal_speed(vehicle):.1f} m/s, "
+    print(f"drag area {vehicle.fall_drag_area:.4f} m²: terminal speed {risk.terminal_speed(vehicle):.1f} m/s, "
           f"30 m: {energy:.0f} J, {fallen.drift:.0f} m ahead")  # fmt: skip
 assert energy < 0.45 * energies["Eq. 4"]
 
