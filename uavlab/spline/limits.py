@@ -59,7 +59,9 @@ class Limit:
 
     @property
     def met(self) -> bool:
-        return self.worst >= self.limit if self.at_least else self.worst <= self.limit
+        """Whether it is kept, to rounding."""
+        slack = 1e-9 * abs(self.limit)
+        return self.worst >= self.limit - slack if self.at_least else self.worst <= self.limit + slack
 
 
 @dataclass(frozen=True, repr=False)
