@@ -468,8 +468,8 @@ assert feasibility(smoothed, uav, campus.city, speed=fastest).feasible
 
 # %% [markdown]
 # The thrust fails as well: in the sharpest bends it would take more than twice what the rotors have, and where the
-# curve bends downwards the UAV would have to fly upside down (a tilt above 90°). It would also climb and sink faster than
-# it can. At 5.5 m/s all is well.
+# curve bends downwards the UAV would have to fly upside down (a tilt above 90°). It would also climb and sink faster
+# than it can. At 5.5 m/s all is well.
 #
 # ## What helps
 #
