@@ -170,7 +170,8 @@ def run(options: argparse.Namespace) -> int:
     usual = default_flight(city, conditions.clearance, heights)
     start, goal = (default if point is None else point for point, default in zip(asked, usual, strict=True))
     routes, risk_map = plan(options, city, risk_map, start, goal, conditions.clearance, heights)
-    trial = try_out(routes[0], city, conditions, heights, options.flights, options.seed)
+    above_roofs = 0.0 if risk_map is None else risk_map.safe_height
+    trial = try_out(routes[0], city, conditions, heights, above_roofs, options.flights, options.seed)
     page = report(city, routes, start, goal, conditions, trial, risk_map)
     write(options.out, page)
     print(f"{routes[0].planner}: {routes[0].length:.1f} m" if routes[0].reached else f"not reached: {routes[0].reason}")
@@ -213,9 +214,9 @@ def position_of(options: argparse.Namespace, city: "City", name: str) -> np.ndar
 def conditions_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> Conditions:
     """From weather and load to the offset to be survived, and the distance to keep (REPARE Eqs 3, 5 and 7)."""
     from uavlab.flight import Wind
-    from uavlab.resilience import gust_force, physical_distance
+    from uavlab.resilience import physical_distance
     from uavlab.vehicle import LIGHT_QUADROTOR
-    from uavlab.weather import Weather
+    from uavlab.weather import Weather, grounded_by
 
     if options.city == "campus" and risk_map is not None:
         uav = risk_map.uav.loaded(options.payload or 0.0)
@@ -223,10 +224,9 @@ def conditions_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> Co
         uav = LIGHT_QUADROTOR.loaded(0.25 if options.payload is None else options.payload)
     weather = Weather(forecast_wind=options.wind, wind_from_deg=options.wind_from, rain_mm_per_h=options.rain)
     wind = Wind.from_weather(weather)
-    pushed, held = gust_force(uav, wind.speed), float(uav.horizontal_reserve())
-    if pushed >= held:
-        why = f"gusts push with {pushed:.1f} N, the thrust left over holds {held:.1f} N: {pushed - held:.1f} N short"
-        return Conditions(uav, wind, weather.reference_wind.gust, np.inf, np.inf, why)
+    reasons = grounded_by(uav, weather)
+    if reasons:
+        return Conditions(uav, wind, weather.reference_wind.gust, np.inf, np.inf, "; ".join(reasons))
     needed = physical_distance(uav, wind.speed)
     clearance = needed if options.clearance is None else options.clearance
     return Conditions(uav, wind, weather.reference_wind.gust, (needed - uav.diameter / 2) / 3, clearance, "")
@@ -255,11 +255,17 @@ def plan(
 
 
 def try_out(
-    route: "Route", city: "City", conditions: Conditions, heights: dict[str, Any], flights: int, seed: int
+    route: "Route",
+    city: "City",
+    conditions: Conditions,
+    heights: dict[str, Any],
+    safe_height: float,
+    flights: int,
+    seed: int,
 ) -> Trial:
-    """Smooth a route, check the curve, and fly it."""
-    from uavlab.flight import OffsetProcess, fly, monte_carlo
-    from uavlab.spline import feasibility, smooth
+    """Smooth a route, check the curve at the greatest speed that it can be flown at, up to cruise, and fly it so."""
+    from uavlab.flight import Autopilot, OffsetProcess, fly, monte_carlo
+    from uavlab.spline import feasibility, greatest_speed, smooth
 
     if not route.reached:
         return Trial("there is no route")
@@ -268,17 +274,20 @@ def try_out(
         curve = smooth(route, city, uav, min_clearance=conditions.clearance, **heights)
     except ValueError as error:
         return Trial(str(error))
-    trial = Trial("", curve, feasibility(curve, uav, city, wind=wind.mean))
+    speed = min(greatest_speed(curve, uav, wind.mean), uav.cruise_speed) or uav.cruise_speed
+    limits = feasibility(curve, uav, city, speed=speed, wind=wind.mean, safe_height=safe_height, **heights)
+    trial = Trial("", curve, limits)
     if flights == 0:
         return trial
-    flight = fly(curve, city, uav, wind, rng=seed)
+    autopilot = Autopilot(speed=speed)
+    flight = fly(curve, city, uav, wind, autopilot, rng=seed)
     if flight.outcome == "grounded":
         return trial._replace(problem=f"grounded: {flight.reason}")
-    flown = monte_carlo(curve, city, uav, wind, rng=seed, flights=flights)
-    offsets = OffsetProcess(conditions.sigma)
-    return trial._replace(
-        flight=flight, flights=flown, as_planned=monte_carlo(curve, city, uav, offsets, rng=seed, flights=flights)
+    flown, as_planned = (
+        monte_carlo(curve, city, uav, gusts, autopilot, rng=seed, flights=flights)
+        for gusts in (wind, OffsetProcess(conditions.sigma))
     )
+    return trial._replace(flight=flight, flights=flown, as_planned=as_planned)
 
 
 def load_city(options: argparse.Namespace) -> tuple["City", "RiskMap | None"]:

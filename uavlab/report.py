@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from uavlab import __version__
+from uavlab.vehicle import WATT_HOUR
 
 if TYPE_CHECKING:  # imported late, so that --help answers at once
     from uavlab.city import City
@@ -51,7 +52,7 @@ class Trial(NamedTuple):
         said = []
         if self.curve is not None and self.limits is not None:
             kept = "all limits kept" if self.limits.feasible else "limits exceeded: " + ", ".join(self.exceeded())
-            said.append(f"smoothed: {self.curve.length:.1f} m, at {self.limits.speed:g} m/s {kept}")
+            said.append(f"smoothed: {self.curve.length:.1f} m, at {self.limits.speed:.3g} m/s {kept}")
         if self.flights is not None:
             given_up = int((self.flights.outcome == "gave up").sum())
             said.append(
@@ -123,15 +124,16 @@ def conditions_table(conditions: Conditions) -> list[tuple[str, str]]:
 def trial_table(trial: Trial, conditions: Conditions) -> list[tuple[str, str]]:
     """What became of the curve and its flights, as name and value."""
     from uavlab.flight import crash_rate
-    from uavlab.spline import greatest_speed
 
     rows = []
-    if trial.curve is not None:
+    if trial.curve is not None and trial.limits is not None:
         repair = f"{trial.curve.info['rounds']} rounds of repair" if trial.curve.info["rounds"] else "no repair needed"
-        fastest = greatest_speed(trial.curve, conditions.uav, conditions.wind.mean)
+        speed, cruise = trial.limits.speed, conditions.uav.cruise_speed
+        slowed = f"; its cruise speed of {cruise:g} m/s breaks limits" if speed < cruise else ""
+        kept = "all limits kept" if trial.limits.feasible else "beyond the limits of " + ", ".join(trial.exceeded())
         rows += [
             ("B-spline", f"{trial.curve.length:.1f} m, {len(trial.curve.control)} control points, {repair}"),
-            ("fastest without slowing down", f"{fastest:.1f} m/s"),
+            ("flown at", f"{speed:.2g} m/s, {kept}{slowed}"),
         ]
     if trial.flights is not None and trial.as_planned is not None:
         flights = trial.flights
@@ -141,13 +143,20 @@ def trial_table(trial: Trial, conditions: Conditions) -> list[tuple[str, str]]:
             ("gave up in these gusts", f"{np.mean(flights.outcome == 'gave up'):.0%}"),
             ("offsets in these gusts", f"σ {across:.2f} m across the route, {up:.2f} m up and down"),
             ("nearest to an obstacle", f"{flights.clearance.min():.2f} m from the centre of the body"),
-            ("time", f"{flights.duration.mean():.0f} s, slower than {conditions.uav.cruise_speed:g} m/s in turns"),
-            ("energy", f"{flights.energy.mean() / 3600:.2f} Wh from the battery"),
+            ("time", f"{flights.duration.mean():.0f} s"),
+            ("energy", energy_used(flights, conditions.uav)),
             (f"crashes with σ = {conditions.sigma:.2f} m", str(crash_rate(trial.as_planned))),
         ]
     if trial.problem:
         rows.append(("not flown", trial.problem))
     return [(name, html.escape(value)) for name, value in rows]
+
+
+def energy_used(flights: "Flights", uav: "UAV") -> str:
+    """What flights take from the battery, in watt-hours, and of what it holds."""
+    used = flights.energy.mean()
+    share = f", {used / uav.battery:.0%} of it" if np.isfinite(uav.battery) else ""
+    return f"{used / WATT_HOUR:.2f} Wh from the battery{share}"
 
 
 def table(city: "City", route: "Route", start: np.ndarray, goal: np.ndarray) -> list[tuple[str, str]]:

@@ -52,7 +52,8 @@ def test_over_several_routes_it_is_never_narrower_than_for_one(seed):
     assert several.low <= pooled.low
     assert several.high >= pooled.high
     alike = crash_rate([flights_of(np.arange(50) < 5)] * 20)
-    assert alike == crash_rate(flights_of(np.tile(np.arange(50) < 5, 20)))
+    together = crash_rate(flights_of(np.tile(np.arange(50) < 5, 20)))
+    assert alike.high - alike.low < 1.2 * (together.high - together.low)
 
 
 def test_routes_that_differ_make_it_wider():
@@ -68,8 +69,8 @@ def test_routes_that_differ_make_it_wider():
 def test_no_crashes_of_many_say_more_than_of_few():
     few, many = ([flights_of(np.zeros(count, bool))] * 5 for count in (10, 1000))
     assert crash_rate(few).low == crash_rate(many).low == 0
-    assert crash_rate(few).high == pytest.approx(1000 * (1 - 0.025 ** (1 / 50)))
-    assert crash_rate(many).high == pytest.approx(1000 * (1 - 0.025 ** (1 / 5000)))
+    assert crash_rate(few).high > 1000 * (1 - 0.025 ** (1 / 50))
+    assert 1000 * (1 - 0.025 ** (1 / 5000)) < crash_rate(many).high < crash_rate(few).high
 
 
 def test_a_rate_reads_as_a_sentence():

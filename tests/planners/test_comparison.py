@@ -16,9 +16,9 @@ from uavlab.planners import (
     optimality_gap,
     waypoint_swarm,
 )
-from uavlab.planners.comparison import over_maps
 from uavlab.risk import RiskMap, random_campus
 from uavlab.route import Route
+from uavlab.statistics import over_maps, share_interval
 
 START, GOAL = (5.0, 5.0, 25.0), (55.0, 45.0, 25.0)
 LINE = np.array([START, GOAL])
@@ -208,9 +208,9 @@ def test_the_interval_holds_the_true_value_in_nearly_all_samples_of_maps():
 def test_wins_are_shares_of_runs_with_ties_as_halves():
     compared = given([[[0.1, 0.2], [0.3, np.inf]], [[0.2, 0.2], [0.1, np.inf]], [[0.0, 0.0], [0.0, 0.0]]])
     assert compared.wins("a", "b")[0] == (1 + 0.5 + 0 + 0.5) / 4
-    assert compared.wins("c", "a") == (1.0, 1.0, 1.0)
-    assert compared.wins("a", "c") == (0.0, 0.0, 0.0)
-    assert compared.wins("b", "b") == (0.5, 0.5, 0.5)
+    assert compared.wins("c", "a") == (1.0, *share_interval(2, 2))  # where both maps agree: of two trials
+    assert compared.wins("a", "c") == (0.0, *share_interval(0, 2))
+    assert compared.wins("b", "b") == (0.5, *share_interval(1, 2))
     # on the first map a wins 3/4 of the runs, on the second 1/4: of two maps drawn, both are the same one half the time
     assert compared.wins("a", "b") == (0.5, 0.25, 0.75)
 

@@ -5,13 +5,12 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import beta
 
 from uavlab import checks
 from uavlab.flight.motion import COLUMNS
-from uavlab.planners.comparison import over_maps
 from uavlab.resilience import Change
 from uavlab.route import Route
+from uavlab.statistics import grouped_share_interval
 
 
 class Energy(NamedTuple):
@@ -168,9 +167,8 @@ class Rate(NamedTuple):
 def crash_rate(runs: Flights | Sequence[Flights]) -> Rate:
     """How many of 1 000 flights crash, with a 95 % interval.
 
-    Of one route: the binomial one (Clopper and Pearson). Of several: flights of the same route aren't independent, so
-    it is a bootstrap over routes, but never narrower than the binomial one, which alone tells 0 crashes of many from
-    0 of few.
+    Of one route: the binomial one (Clopper and Pearson). Of several: flights of the same route aren't independent, and
+    it is that of the mean over all such routes, `uavlab.statistics.grouped_share_interval`.
 
     Parameters
     ----------
@@ -192,10 +190,5 @@ def crash_rate(runs: Flights | Sequence[Flights]) -> Rate:
     if len({len(run.outcome) for run in runs}) != 1:
         raise ValueError("runs must be at least one, with as many flights each")
     crashed = np.array([run.crashed for run in runs])
-    count, total = int(crashed.sum()), crashed.size
-    low = float(beta.ppf(0.025, count, total - count + 1)) if count else 0.0
-    high = float(beta.ppf(0.975, count + 1, total - count)) if count < total else 1.0
-    if len(runs) > 1:
-        over_low, over_high = over_maps(np.mean, crashed)
-        low, high = min(low, over_low), max(high, over_high)
-    return Rate(1000 * count / total, 1000 * low, 1000 * high)
+    low, high = grouped_share_interval(crashed.sum(axis=1), crashed.shape[1])
+    return Rate(1000 * float(crashed.mean()), 1000 * low, 1000 * high)

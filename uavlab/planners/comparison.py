@@ -16,6 +16,7 @@ from uavlab import checks
 from uavlab.planners.least_risk import least_risk
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap
 from uavlab.route import Route
+from uavlab.statistics import over_maps, share_over_maps
 from uavlab.sweep import sweep
 
 if TYPE_CHECKING:
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
 
 Planner = Callable[..., Route]
 """Called as planner(risk_map, start, goal, budget=…, rng=…)."""
-
-RESAMPLES = 2000
-"""Bootstrap samples of the maps for an interval of 95 %."""
 
 
 def optimality_gap(route: Route, exact: Route) -> float:
@@ -113,14 +111,14 @@ class Comparison:
     def wins(self, planner: str, other: str) -> tuple[float, float, float]:
         """Share of runs (map, seed) in which a planner's gap is less than another's, and its 95 % interval.
 
-        Ties count half. The interval is a bootstrap over the maps.
+        Ties count half. The interval is `share_over_maps`.
         """
         for name, value in (("planner", planner), ("other", other)):
             if value not in self.planners:
                 raise ValueError(f"{name} must be one of {', '.join(self.planners)}, got {value!r}")
         a, b = (self.gaps[self.planners.index(name)] for name in (planner, other))
         won = np.where(a == b, 0.5, a < b)
-        return float(won.mean()), *over_maps(np.mean, won)
+        return float(won.mean()), *share_over_maps(won)
 
     def converged(self, within: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
         """When each run came to within a share of its final cost: evaluations and iterations, (P, M, S) each.
@@ -134,14 +132,6 @@ class Comparison:
         evaluations = np.where(near.any(axis=-1), near.argmax(axis=-1) + 1, self.histories.shape[-1])
         iterations = [np.searchsorted(ends, made) + 1 for ends, made in zip(self.iterations, evaluations, strict=True)]
         return evaluations, np.array(iterations)
-
-
-def over_maps(statistic: Callable[..., Any], values: np.ndarray) -> tuple[float, float]:
-    """95 % interval of a statistic of values (M, S), by resampling the maps."""
-    rng = np.random.default_rng(0)
-    drawn = values[rng.integers(len(values), size=(RESAMPLES, len(values)))]
-    low, high = np.quantile(statistic(drawn.reshape(RESAMPLES, -1), axis=1), [0.025, 0.975], method="nearest")
-    return float(low), float(high)
 
 
 def compare_planners(
