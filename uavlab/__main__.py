@@ -343,22 +343,28 @@ def by_risk(
 
 
 def default_flight(city: "City", clearance: float, heights: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
-    """A flight across the map: a known one, else from the south-west to the north-east, amid the buildings."""
+    """A flight across the map: a known one, else from the south-west to the north-east, amid the buildings.
+
+    From the free voxels that are far enough from obstacles and nearest to its ends.
+    """
     from uavlab.risk import CAMPUS_FLIGHT
 
     known = {"Table 1": TABLE1_FLIGHT, "reference campus": CAMPUS_FLIGHT}
-    if city.name in known:
-        return np.array(known[city.name][0]), np.array(known[city.name][1])
     free = np.argwhere(~city.blocked(clearance, **heights))
     if len(free) == 0:
         raise ValueError(
             f"--clearance {clearance:g}: no voxel of the map is that far from all obstacles, within the limits of "
             "height; ask for less"
         )
-    above = city.height_above_ground(city.center_of(np.argwhere(city.occupied)))
-    height = 0.4 * (float(above.max(initial=0.0)) or float(np.ptp(city.bounds[:, 2])))
-    points = city.bounds[0] + np.array([[0.1, 0.1, 0.0], [0.9, 0.9, 0.0]]) * np.ptp(city.bounds, axis=0)
-    points[:, 2] += height - city.height_above_ground(points)
+    if city.name in known:
+        points = np.array(known[city.name])
+        if not city.blocked(clearance, **heights)[tuple(city.cell_of(points).T)].any():
+            return points[0], points[1]
+    else:
+        above = city.height_above_ground(city.center_of(np.argwhere(city.occupied)))
+        height = 0.4 * (float(above.max(initial=0.0)) or float(np.ptp(city.bounds[:, 2])))
+        points = city.bounds[0] + np.array([[0.1, 0.1, 0.0], [0.9, 0.9, 0.0]]) * np.ptp(city.bounds, axis=0)
+        points[:, 2] += height - city.height_above_ground(points)
     nearest = [free[np.argmin(((city.center_of(free) - point) ** 2).sum(axis=1))] for point in points]
     return city.center_of(nearest[0]), city.center_of(nearest[1])
 
