@@ -56,7 +56,8 @@ def grouped_share_interval(counts: npt.ArrayLike, trials: int) -> tuple[float, f
 
     Shares of groups are Beta with mean m and variance ρ m (1 − m), so that counts are beta-binomial. √ρ is as likely a
     priori anywhere from 0 to 1; for the upper end m is, too, for the lower end log m, so that each end errs outwards.
-    2.5 % of m given the counts lie beyond each end. It is never narrower than that of independent trials.
+    2.5 % of m given the counts lie beyond each end. It is never narrower than that of independent trials, nor than by
+    resampling the groups, where their shares aren't Beta.
 
     Parameters
     ----------
@@ -90,7 +91,8 @@ def grouped_share_interval(counts: npt.ArrayLike, trials: int) -> tuple[float, f
     even, even_in_log = np.diff(edges), np.diff(np.log(edges))
     least = 0.0 if low == 0 else quantile(0.025, edges, likelihood * even_in_log)
     most = 1.0 if high == 1 else quantile(0.975, edges, likelihood * even)
-    return min(low, least), max(high, most)
+    drawn = over_maps(np.mean, events[:, None] / trials)
+    return min(low, least, drawn[0]), max(high, most, drawn[1])
 
 
 def quantile(share: float, edges: np.ndarray, mass: np.ndarray) -> float:

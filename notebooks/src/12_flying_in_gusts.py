@@ -272,8 +272,9 @@ scene.show(city, flights={planner: first(in_storm["far"], planner, end) for plan
 #
 # $$ \sigma = \frac{D_\text{min} - D_\text{uav}/2}{3} = 1,\; 1.33,\; 1.67\text{ m}. \tag{6} $$
 #
-# Flights of one route aren't independent, so the interval is a bootstrap over routes, and never narrower than the
-# binomial one. The potential field is that of Table 2's lengths; where it doesn't arrive it can't crash.
+# Flights of one route aren't independent: the interval is that of the mean over all such routes, whose rates differ.
+# With few crashes it is wide, as a route that nobody drew may be a bad one. The potential field is that of Table 2's
+# lengths; where it doesn't arrive it can't crash.
 
 # %%
 FLIGHTS = 20  # of each route; 200 for the figures of the text
@@ -330,9 +331,9 @@ plot.crash_rates(rates)
 #
 # | case | A\* | potential field | REPARE | hazard |
 # |---|---|---|---|---|
-# | light load, mild wind, 3.5 m | 711 [648, 771] | 41.3 [33.3, 50.3] | 9.6 [7.85, 11.4] | 0.05 [0, 0.28] |
-# | heavy load, mild wind, 4.5 m | 722 [661, 779] | 139 [119, 161] | 8.4 [6.7, 10.2] | 0.2 [0, 0.51] |
-# | light load, heavy wind, 5.5 m | 732 [674, 788] | 260 [230, 292] | 10.4 [8.65, 12.2] | 0.2 [0.05, 0.51] |
+# | light load, mild wind, 3.5 m | 711 [519, 771] | 41.3 [33.3, 52.8] | 9.6 [7.85, 12.1] | 0.05 [0, 21.9] |
+# | heavy load, mild wind, 4.5 m | 722 [539, 779] | 139 [119, 164] | 8.4 [6.7, 10.8] | 0.2 [0, 19.4] |
+# | light load, heavy wind, 5.5 m | 732 [572, 788] | 260 [230, 295] | 10.4 [8.65, 12.6] | 0.2 [0.05, 11.3] |
 #
 # A* loses seven flights of ten. REPARE loses one of a hundred, in all three cases: its distance grows with σ, so that
 # it keeps what it promises. What it promises is $3\sigma$, and over a flight that is no 99.7 %: we come back to it.
