@@ -55,7 +55,9 @@ def test_the_other_gravity_is_right_too():
 
 def test_the_library_falls_as_fast():
     def fall_speed(height, mass, drag_area, air_density):
-        return risk.fall_speed(height, replace(RISK_QUADROTOR, mass=mass, drag_area=drag_area), air_density=air_density)
+        return risk.fall_speed(
+            height, replace(RISK_QUADROTOR, mass=mass, fall_drag_area=drag_area), air_density=air_density
+        )
 
     assert exercises.check("05.1", fall_speed)
 

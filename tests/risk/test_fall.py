@@ -15,7 +15,7 @@ from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR, RISK_QUADROTOR
 
 NAN = float("nan")
 REACH = PERSON_RADIUS + RISK_QUADROTOR.diameter / 2
-IN_VACUUM = replace(RISK_QUADROTOR, drag_area=1e-12)
+IN_VACUUM = replace(RISK_QUADROTOR, fall_drag_area=1e-12)
 heights = st.floats(0.01, 1000)
 speeds = st.floats(0, 30)
 pitches = st.floats(-1.5, 1.5)
@@ -23,7 +23,7 @@ pitches = st.floats(-1.5, 1.5)
 
 def followed(uav, forward, climb, depth):
     """Distance, forward and vertical speed when `depth` is lost: another method than the package's, own constants."""
-    k = uav.drag_area * 1.225 / (2 * (uav.mass + uav.payload))
+    k = (uav.fall_drag_area or uav.drag_area) * 1.225 / (2 * (uav.mass + uav.payload))
 
     def motion(_, state):
         _, _, vx, vz = state
@@ -68,7 +68,7 @@ def test_speeds_of_the_papers_vehicle():
 def test_terminal_speed_is_where_drag_carries_the_weight():
     for uav, density in ((RISK_QUADROTOR, 1.225), (LIGHT_QUADROTOR.loaded(0.5), 0.9)):
         speed = terminal_speed(uav, air_density=density)
-        assert 0.5 * density * uav.drag_area * speed**2 == pytest.approx(uav.weight, rel=1e-12)
+        assert 0.5 * density * (uav.fall_drag_area or uav.drag_area) * speed**2 == pytest.approx(uav.weight, rel=1e-12)
         assert fall_speed(1e5, uav, air_density=density) == pytest.approx(speed, rel=1e-9)
 
 
@@ -162,7 +162,7 @@ def test_a_diving_vehicle_lands_where_it_is():
 
 
 def test_what_sinks_at_a_snails_pace_arrives_too():
-    under_canvas = replace(RISK_QUADROTOR, drag_area=300.0)
+    under_canvas = replace(RISK_QUADROTOR, fall_drag_area=300.0)
     pace = terminal_speed(under_canvas)
     assert pace < 0.3
     fall = ballistic_fall(30.0, under_canvas)
