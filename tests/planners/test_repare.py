@@ -10,8 +10,9 @@ from test_astar import additive_cost, cheapest_by_scipy, is_legal
 from uavlab.city import City
 from uavlab.planners import astar, flight_conditions, penalty_zone, potential_field, repare, repare_price
 from uavlab.planners.repare import cached_price
-from uavlab.resilience import gust_offset
+from uavlab.resilience import LOADS, gust_offset
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
+from uavlab.weather import Weather, grounded_by
 
 TABLE_4 = ("light", "mild", 3.5), ("heavy", "mild", 4.5), ("light", "heavy", 5.5)
 NOTCH = (90, 18, 30), (50, 44, 30)  # Fig. 12
@@ -368,7 +369,9 @@ def test_conditions_of_table_3_that_ground_it_are_an_answer(table1):
 
 def test_gusts_that_push_harder_than_the_thrust_left_over_ground_it(table1):
     route = repare(table1, *FAR, disturbance=(0.0, 20.0, 0.0))
-    assert re.fullmatch(r"grounded: gusts push with 45\.0 N, the thrust left over holds 22\.1 N", route.reason)
+    loaded = LIGHT_QUADROTOR.loaded(LOADS["light"])
+    assert route.reason == "grounded: " + "; ".join(grounded_by(loaded, Weather(forecast_wind=20.0)))
+    assert "gusts: 35.0 m/s, and the thrust left over holds 24.6 m/s" in route.reason
     assert repare(table1, (20, 5, 20), FAR[1], disturbance=(0.0, 12.0)).reached
 
 
