@@ -16,6 +16,7 @@ from uavlab.resilience import ADVANCED, BASIC, ConditionCheck, Controller, Monit
 from uavlab.risk import reference_campus
 from uavlab.route import Route
 from uavlab.spline import Curve
+from uavlab.statistics import share_interval
 from uavlab.vehicle import LIGHT_QUADROTOR
 
 UAV = LIGHT_QUADROTOR
@@ -392,11 +393,13 @@ def test_astar_crashes_every_other_time_and_repare_seldom(planned, conditions):
 
 
 def test_the_hazard_planner_crashes_at_least_five_times_less_than_repare(planned):
-    """Pooled over the three cases; measured: 0.2 against 11.4 per 1 000."""
-    _, resilient, hazardous = (
-        crash_rate([runs for conditions in TABLE_4 for runs in planned(*conditions)[planner]]) for planner in range(3)
-    )
-    assert hazardous.high < resilient.low / 5
+    """On these routes, in the three cases; measured: 0.2 against 11.4 per 1 000 of 9 000 flights each."""
+    crashed = [
+        np.concatenate([runs.crashed for conditions in TABLE_4 for runs in planned(*conditions)[planner]])
+        for planner in range(3)
+    ]
+    _, resilient, hazardous = (share_interval(int(each.sum()), len(each)) for each in crashed)
+    assert hazardous[1] < resilient[0] / 5
 
 
 WALLED, ALONG = beside_wall(3.0)

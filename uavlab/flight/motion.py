@@ -123,7 +123,7 @@ class State(NamedTuple):
 def fly_on(body, air, path, space, state, dt, most, every, rng, log):
     """Fly up to `most` steps: FLYING, ARRIVED, CRASHED, BLOWN_BACK or BATTERY_EMPTY."""
     target_velocity, ahead, back = np.empty(3), np.empty(3), np.empty(3)
-    thrust, stream, drag, velocity = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    thrust, stream, drag, velocity, wind = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for _ in range(most):
         step = state.counts[0]
         pace = body.pace * patience(state)
@@ -131,7 +131,8 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
         velocity_at(path, state, speed * PREVIEW, ahead)
         velocity_at(path, state, -speed * PREVIEW, back)
         blow(air, state, step, rng)
-        look(body, state, step, rng)
+        if fix_due(step, body.gps_fixes):
+            look(body, state, step, rng)
         for a in range(3):
             target_velocity[a] *= pace
             change = pace * (ahead[a] - back[a]) / (2 * PREVIEW)
@@ -162,15 +163,22 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
             state.before[a] = state.position[a]
             state.position[a] += dt * state.velocity[a]
             state.seen_position[a] += dt * state.seen_velocity[a]
-        spend(body, air, state, dt, thrust, drag, velocity)
+        for a in range(3):
+            wind[a] = air.mean[a] + state.gust[a]
+        state.sums[RAIN] += dt * body.rain * velocity[2]
+        spend(state.sums, dt, thrust, drag, velocity, wind, body.disc, body.profile, body.efficiency)
     return FLYING
 
 
 @compiled
+def fix_due(step, fixes):
+    """Whether GPS has a new fix at a step, with so many fixes a step; at the first one it has."""
+    return step == 0 or math.floor(step * fixes * MORE) > math.floor((step - 1) * fixes * MORE)
+
+
+@compiled
 def look(body, state, step, rng):
-    """What GPS says of place and speed, when a fix is due; its error drifts from where it was at the start."""
-    if step > 0 and math.floor(step * body.gps_fixes * MORE) == math.floor((step - 1) * body.gps_fixes * MORE):
-        return
+    """What GPS says of place and speed; its error drifts from 0 at the start."""
     for a in range(3):
         if step > 0:
             new = body.gps_enter[a] * rng.standard_normal()
@@ -180,27 +188,25 @@ def look(body, state, step, rng):
 
 
 @compiled
-def spend(body, air, state, dt, thrust, drag, velocity):
+def spend(sums, dt, thrust, drag, velocity, wind, disc, profile_share, efficiency):
     """Add up the energy of a step, by the velocity in its middle (3,)."""
     pulled = length(thrust)
     through, speed, dragged, blown = 0.0, 0.0, 0.0, 0.0
     for a in range(3):
-        wind = air.mean[a] + state.gust[a]
-        relative = velocity[a] - wind
+        relative = velocity[a] - wind[a]
         through += thrust[a] * relative / pulled
         speed += relative * relative
         dragged -= drag[a] * relative
-        blown += (thrust[a] + drag[a]) * wind
+        blown += (thrust[a] + drag[a]) * wind[a]
     across = math.sqrt(max(speed - through * through, 0.0))
-    induced, profile, useful = rotor_power(pulled, math.sqrt(pulled / body.disc), through, across, body.profile)
+    induced, profile, useful = rotor_power(pulled, math.sqrt(pulled / disc), through, across, profile_share)
     shaft = induced + profile + useful
-    state.sums[BATTERY] += dt * max(shaft, 0.0) / body.efficiency
-    state.sums[INDUCED] += dt * induced
-    state.sums[PROFILE] += dt * profile
-    state.sums[DRAG] += dt * dragged
-    state.sums[WIND] += dt * blown
-    state.sums[RAIN] += dt * body.rain * velocity[2]
-    state.sums[BRAKED] += dt * max(-shaft, 0.0)
+    sums[BATTERY] += dt * max(shaft, 0.0) / efficiency
+    sums[INDUCED] += dt * induced
+    sums[PROFILE] += dt * profile
+    sums[DRAG] += dt * dragged
+    sums[WIND] += dt * blown
+    sums[BRAKED] += dt * max(-shaft, 0.0)
 
 
 @compiled

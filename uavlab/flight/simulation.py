@@ -2,9 +2,9 @@
 
 import copy
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain
-from typing import NamedTuple
 
 import numpy as np
 
@@ -49,7 +49,8 @@ PATIENCE, PAUSE = 3.0, 60.0
 BATCH = 100
 
 
-class Setup(NamedTuple):
+@dataclass(frozen=True)
+class Setup:
     """A question that was checked."""
 
     route: Route
@@ -66,7 +67,7 @@ class Setup(NamedTuple):
             now, controller, flown_by(self.uav, controller), self.autopilot, path, self.altitude, self.time_step
         )
 
-    @property
+    @cached_property
     def path(self) -> Path:
         """As planned when the flight begins."""
         return self.path_in(now_of(self.disturbance, 0.0), first_controller(self.autopilot))
