@@ -12,6 +12,22 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.segments import least_clearance
 
+PROMISES = ("min_clearance", "min_height", "max_height", "safe_height")
+"""What routes and curves remember that they keep [m]."""
+
+
+def check_promises(of: Any) -> None:
+    """Refuse those that are out of their range."""
+    for name in ("min_clearance", "min_height", "safe_height"):
+        checks.not_negative_number(name, getattr(of, name))
+    if not of.max_height > of.min_height:
+        raise ValueError(f"max_height must be above min_height = {of.min_height!r}, got {of.max_height!r}")
+
+
+def promises_of(one: Any, **instead: float | None) -> dict[str, Any]:
+    """What a route or a curve promises, but for what is asked for instead; None asks for nothing."""
+    return {name: getattr(one, name) if instead.get(name) is None else instead[name] for name in PROMISES}
+
 
 @dataclass(frozen=True, eq=False)
 class Route:
@@ -33,11 +49,20 @@ class Route:
         What the planner noted: `expanded`, `elapsed` [s], histories when asked for.
     takeoff, landing : int
         How many of its first and last legs are vertical take-off and landing, below the planner's `min_height`.
+    min_clearance, min_height, max_height, safe_height : float
+        What its planner promises all along, but for take-off and landing [m]: least distance to obstacles, least and
+        greatest height above ground, least height above roofs and ground below. `shortcut`, `smooth` and `refine` keep
+        it, `feasibility` asks for it.
+    max_length : float
+        The length that it may have between take-off and landing [m]; `refine` keeps it.
+    priced : str
+        What a metre of it paid for beside its length, such as "risk"; empty if nothing. Without a price `shortcut`
+        would lead it where that is dear.
 
     Raises
     ------
     ValueError
-        If `points` hasn't shape (N, 3) or is not finite.
+        If `points` hasn't shape (N, 3) or is not finite, or a promise is out of its range.
     """
 
     points: np.ndarray
@@ -48,8 +73,17 @@ class Route:
     info: dict[str, Any] = field(default_factory=dict)
     takeoff: int = 0
     landing: int = 0
+    min_clearance: float = 0.0
+    min_height: float = 0.0
+    max_height: float = np.inf
+    safe_height: float = 0.0
+    max_length: float = np.inf
+    priced: str = ""
 
     def __post_init__(self) -> None:
+        check_promises(self)
+        if not self.max_length > 0:
+            raise ValueError(f"max_length must be above 0, got {self.max_length!r}")
         points = np.array(self.points, dtype=float)
         if points.ndim != 2 or points.shape[1] != 3:
             raise ValueError(f"points must have shape (N, 3), got {points.shape}")

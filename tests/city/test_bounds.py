@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from uavlab.city import City, NoFlyZone
+from uavlab.city import Building, City, NoFlyZone
 from uavlab.city.bounds import bounds_of, keeps, least_room, legs_keep, slack_of
 
 
@@ -16,7 +16,7 @@ def test_room_is_the_least_over_the_columns_that_samples_meet(seed, aside):
     start, end = rng.uniform(0, (9, 7, 9), (2, 3))
     if seed % 5 == 0:
         end[:2] = start[:2]
-    room = least_room(lowest, highest, start, end, aside)
+    room = least_room(lowest[..., None], highest, start, end, aside)
     points = start + np.linspace(0, 1, 20_001)[:, None] * (end - start)
     least = np.inf
     for shift in np.array([(-1, -1), (-1, 1), (1, -1), (1, 1), (0, 0)]) * aside:
@@ -81,3 +81,22 @@ def test_each_leg_is_told():
 def test_far_from_the_origin_positions_are_rounded_more():
     assert slack_of(City(np.zeros((3, 3, 3)))) == pytest.approx(1e-9, rel=1e-3)
     assert slack_of(City(np.zeros((3, 3, 3)), 0.1, (5e6, 0, 0))) == pytest.approx(4.5e-8, rel=0.1)
+
+
+def test_height_above_roofs_is_kept_above_a_slab_and_below_it_that_above_the_ground():
+    slab = Building.prism([(4, 0), (8, 0), (8, 20), (4, 20)], 8.0, bottom=7.0, name="bridge")
+    city = City.from_buildings([slab], cell=1.0, origin=(0, 0, 0), size=(12, 20, 14))
+    asked = {"safe_height": 3.0}
+
+    def over(z, x=1.5, to=10.5):
+        bounds = bounds_of(city, **asked)
+        return keeps(bounds, np.array([x, 10.0, z]), np.array([to, 10.0, z]), 0.0, 0.0)[0]
+
+    assert over(11.0)
+    assert not over(10.99)
+    assert over(3.0)  # below the bridge it is the ground that counts
+    assert not over(2.99)
+    assert over(10.99, to=3.9)
+    assert keeps(bounds_of(city, **asked), np.array([2.0, 5, 3.0]), np.array([2.0, 5, 13.0]), 0.0, 0.0)[0]
+    with pytest.raises(ValueError, match="safe_height must be finite and at least 0"):
+        bounds_of(city, safe_height=-1.0)

@@ -232,7 +232,9 @@ def first_steps(query, trail, faded, look, habits, count):
     least = module.log(habits.least) - faded
     steps = np.zeros(trail.size, int)
     for ant in range(1, count + 1):
-        module.walk(query, trail, least, look, habits.alpha, module.NO_HEADING, module.NO_MOVE, seen, ant, rng, nodes)
+        module.walk(
+            query, trail, least, look, habits.alpha, module.NO_HEADING, module.NO_MOVE, seen, ant, rng, nodes, np.inf
+        )
         steps[nodes[1]] += 1
     return steps
 
@@ -287,7 +289,9 @@ def test_compiled_and_plain_python_agree():
         trail = np.zeros(look.size)
         answers.append([])
         for mark in range(1, 30):
-            found = walk(query, trail, -9.0, look, 1.0, module.NO_HEADING, module.NO_MOVE, seen, mark, rng, nodes)
+            found = walk(
+                query, trail, -9.0, look, 1.0, module.NO_HEADING, module.NO_MOVE, seen, mark, rng, nodes, np.inf
+            )
             answers[-1].append((*found, nodes[: found[0]].tolist()))
     assert answers[0] == answers[1]
     assert len({len(answer[3]) for answer in answers[0]}) > 2
@@ -300,7 +304,7 @@ def test_an_ant_leaves_its_piece_with_a_heading_that_the_next_one_can_follow():
     north, last = int(np.flatnonzero((MOVES == (0, 1, 0)).all(axis=1))[0]), set()
     seen, nodes, rng = np.zeros(look.size, np.int64), np.empty(84, np.int64), np.random.default_rng(0)
     for mark in range(1, 2000):
-        count, _, _ = module.walk(query, 0 * look, -9.0, 0 * look, 1.0, 0, north, seen, mark, rng, nodes)
+        count, _, _ = module.walk(query, 0 * look, -9.0, 0 * look, 1.0, 0, north, seen, mark, rng, nodes, np.inf)
         if count:
             index = risk_map.city.index_of(nodes[:count])
             assert angle_between((1, 0), np.diff(index[:2], axis=0)[0, :2]) <= np.pi / 3

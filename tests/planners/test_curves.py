@@ -6,21 +6,37 @@ import pytest
 from uavlab.checks import frozen
 from uavlab.city import City
 from uavlab.city.segments import runs_of
-from uavlab.planners.curves import PER_SEGMENT, SLACK, Measure, Sky, Task, breaches, costs_of, task_of
+from uavlab.planners.curves import PER_SEGMENT, SLACK, Measure, Sky, Task, Weights, breaches, costs_of, task_of
 from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN, checked_limits, flyable_endpoints, price_per_cell
-from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
+from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
+from uavlab.risk.drift import NO_FALLS, landing_rate
 from uavlab.route import Route
 from uavlab.spline import cubic_bspline
 
 ANY = {"max_turn": np.pi, "max_pitch": np.pi / 2}
+RISK = Weights(1.0, 0.0, 0.0, False)
 
 
-def sky_over(price, closed, max_turn=np.pi, max_pitch=np.pi / 2, lowest=-np.inf, highest=np.inf, keep=0.0):
+def sky_over(
+    price, closed, max_turn=np.pi, max_pitch=np.pi / 2, lowest=-np.inf, highest=np.inf, keep=0.0, longest=np.inf
+):
     """A map as curves see it, without limits but for those given [cells]."""
     low, high = np.full(closed.shape, lowest, float), np.full(closed.shape[:2], highest, float)
     clearance = City(closed).clearance if keep else np.empty((0, 0, 0))
     arrays = [frozen(np.array(values)) for values in (low, high, clearance)]
-    return Sky(price, frozen(closed, bool), *arrays[:2], runs_of(closed), arrays[2], keep, max_turn, max_pitch)
+    return Sky(
+        price,
+        NO_FALLS,
+        0.0,
+        frozen(closed, bool),
+        *arrays[:2],
+        runs_of(closed),
+        arrays[2],
+        keep,
+        max_turn,
+        max_pitch,
+        longest,
+    )
 
 
 def random_sky(rng):
@@ -42,7 +58,7 @@ def test_cost_and_way_in_closed_voxels_are_the_integrals_of_a_route(seed):
     lines = random_lines(rng, city.shape)
     if seed % 2:
         lines = cubic_bspline(lines, 6)
-    costs, closed, angles = costs_of(sky, lines)
+    costs, closed, angles, _ = costs_of(sky, lines)
     for line, cost, shut in zip(lines, costs, closed, strict=True):
         route = Route(line)
         assert cost == pytest.approx(route.integral(city, sky.price), rel=1e-9)
@@ -56,7 +72,7 @@ def test_off_the_map_is_closed_and_costs_nothing(seed):
     rng = np.random.default_rng(seed)
     sky = random_sky(rng)
     (line,) = random_lines(rng, sky.closed.shape, count=1, beyond=3.0)
-    (cost,), (closed,), _ = costs_of(sky, line[None])
+    (cost,), (closed,), _, _ = costs_of(sky, line[None])
     dense = Route(line).resample(1e-3).points
     middles, length = (dense[1:] + dense[:-1]) / 2, np.linalg.norm(np.diff(dense, axis=0), axis=1)
     index = np.floor(middles).astype(int)
@@ -72,7 +88,7 @@ def test_off_the_map_is_closed_and_costs_nothing(seed):
 def test_a_line_along_the_edge_of_the_map_is_within_it_below_and_off_it_above():
     sky = sky_over(np.ones((4, 4, 4)), np.zeros((4, 4, 4), bool))
     low, high = np.array([[[0, 0, 0], [4, 0, 0]], [[0, 4, 0], [4, 4, 0]]], float)
-    costs, closed, _ = costs_of(sky, np.array([low, high]))
+    costs, closed, _, _ = costs_of(sky, np.array([low, high]))
     assert costs.tolist() == [4, 0]
     assert closed.tolist() == [0, 4]
 
@@ -148,7 +164,7 @@ def task_for(risk_map, start, goal, spline=True, **limits):
     every = {"max_turn": MAX_TURN, "max_pitch": MAX_PITCH, "min_clearance": 0.0, "min_height": None}
     limits = checked_limits(risk_map, **(every | {"max_height": np.inf} | limits))
     price = price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
-    return task_of(risk_map, flyable_endpoints(risk_map, start, goal, limits), price, limits, spline)
+    return task_of(risk_map, flyable_endpoints(risk_map, start, goal, limits), price, RISK, limits, spline)
 
 
 def test_task_is_the_question_in_cells():
@@ -181,7 +197,7 @@ def test_costs_are_the_integral_and_any_breach_costs_more_the_worse_it_is(spline
     control[::2, 1:-1, 2] += 4.0  # above most roofs
     costs = task.costs(control, PER_SEGMENT)
     lines = task.lines(control, PER_SEGMENT)
-    _, closed, angles = costs_of(task.sky, lines)
+    _, closed, angles, _ = costs_of(task.sky, lines)
     broken = closed + angles
     city = risk_map.city
     for line, cost in zip(lines[broken == 0], costs[broken == 0], strict=True):
@@ -324,8 +340,36 @@ def test_legs_that_come_too_near_count_their_length(seed):
 
 def test_compiled_and_plain_python_agree():
     rng = np.random.default_rng(4)
-    sky = random_sky(rng)._replace(max_turn=1.0, max_pitch=0.5)
+    sky = random_sky(rng)._replace(max_turn=1.0, max_pitch=0.5, longest=2.0)
     lines = random_lines(rng, sky.closed.shape, beyond=1.0)
     for fast, plain in zip(costs_of(sky, lines), costs_of.py_func(sky, lines), strict=True):
         assert fast == pytest.approx(plain, rel=1e-12)
         assert (fast > 0).all()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_risk_ahead_of_a_leg_is_that_where_its_wreck_lands(seed):
+    """In its own direction, not the nearest of 26."""
+    risk_map, rng = random_campus(seed), np.random.default_rng(seed)
+    limits = checked_limits(risk_map, MAX_TURN, MAX_PITCH, 0.0, 0.0, np.inf)
+    ends = flyable_endpoints(risk_map, *CAMPUS_FLIGHT, limits)
+    weights = Weights(2.0, 0.0, 0.0, True)
+    sky = task_of(risk_map, ends, price_per_cell(risk_map, *weights), weights, limits, False).sky
+    ours, theirs = [], []
+    for line in random_lines(rng, risk_map.city.shape, 60):
+        leg = line[:2]
+        index, length = risk_map.city.voxels_along(risk_map.city.origin + leg * risk_map.city.cell)
+        theirs.append(2.0 * landing_rate(risk_map, index, leg[1] - leg[0]) @ length / risk_map.city.cell)
+        ours.append(costs_of(sky, leg[None])[0][0])
+    assert ours == pytest.approx(theirs, rel=1e-9)
+
+
+def test_a_curve_that_is_too_long_breaks_a_limit_and_says_by_how_much():
+    sky = sky_over(np.ones((9, 9, 4)), np.zeros((9, 9, 4), bool), longest=6.0)
+    straight, bent = np.array([[(1.0, 1, 1), (4, 1, 1), (7, 1, 1)], [(1.0, 1, 1), (4, 4, 1), (7, 1, 1)]])
+    *_, longer = costs_of(sky, np.array([straight, bent]))
+    assert longer == pytest.approx([0.0, 6 * 2**0.5 - 6])
+    task = Task(sky, straight[0], straight[-1], False, 10.0, 1e4)
+    assert task.costs(np.array([straight, bent]), 1)[1] > 1e4
+    assert breaches(task, bent, 5.0) == "is 12.4 m longer than max_length"
+    assert breaches(task, straight, 5.0) == ""

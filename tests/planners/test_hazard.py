@@ -61,7 +61,7 @@ def test_price_falls_with_the_distance_and_rises_with_sigma():
 )
 def test_a_mean_offset_towards_the_wall_takes_from_the_margin_and_away_from_it_gives_nothing(mean, shift):
     plain, shifted = hazard_price(wall(), 1.0), hazard_price(wall(), 1.0, mean_offset=mean)
-    assert shifted[1 + shift :] == pytest.approx(plain[1 : 40 - shift], rel=1e-12)
+    assert shifted[1 + shift :, :-3] == pytest.approx(plain[1 : 40 - shift, :-3], rel=1e-12)  # beyond the map no wall
 
 
 def test_the_price_is_kept_and_not_confused():
@@ -81,8 +81,8 @@ def test_the_price_is_kept_and_not_confused():
 def test_cost_is_that_of_astar_and_of_scipy_s_dijkstra_on_the_price(seed):
     city, rng = random_city(seed)
     start, goal = city.center_of(rng.permutation(np.argwhere(~city.occupied))[:2])
-    price = hazard_price(city, 1.3)
-    route = hazard_astar(city, start, goal, sigma=1.3, any_angle=False)
+    price = hazard_price(city, 1.3, uav_radius=0.1)
+    route = hazard_astar(city, start, goal, sigma=1.3, uav_radius=0.1, any_angle=False)
     assert route.cost == pytest.approx(cheapest_by_scipy(city, start, goal, price), rel=1e-9)
     assert route.cost == pytest.approx(additive_cost(city, route, price), rel=1e-12)
     assert route.cost == pytest.approx(astar(city, start, goal, price=price).cost, rel=1e-12)

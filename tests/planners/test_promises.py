@@ -110,7 +110,8 @@ def planned(town, seed):
         "A*": astar(city, start, goal, **limits),
         "least risk": least_risk(risk_map, start, goal, **limits),
     }
-    routes = nodes | {f"{name} + shortcut": shortcut(route, city, **limits) for name, route in nodes.items()}
+    prices = {"A*": None, "least risk": risk_map.rate}
+    routes = nodes | {f"{name} + shortcut": shortcut(nodes[name], city, price=price) for name, price in prices.items()}
     for name, route in list(routes.items()):
         if route.reached and len(route.points) > 1:
             try:

@@ -124,7 +124,7 @@ def test_a_dear_zone_is_not_cut_through():
     short = shortcut(route, OPEN, price=price)
     assert short.length > 30
     assert short.cost == pytest.approx(short.length)  # it stays where a metre costs 1
-    assert shortcut(route, OPEN).length == 19  # without the price, it is a straight line
+    assert shortcut(route, OPEN, price=1.0).length == 19  # without the price, it is a straight line
 
 
 @pytest.mark.parametrize("seed", range(60))
@@ -208,7 +208,7 @@ def test_a_penalty_zone_is_kept_in_mind(table1):
     route = astar(table1, (90, 20, 30), (50, 44, 30), price=price)
     short = shortcut(route, table1, price=price)
     assert short.cost <= route.cost + 1e-9
-    assert short.cost < integral(table1, price, shortcut(route, table1).points, step=0.01) - 0.1
+    assert short.cost < integral(table1, price, shortcut(route, table1, price=1.0).points, step=0.01) - 0.1
 
 
 def walled(*voxels, shape=(3, 6, 1)):

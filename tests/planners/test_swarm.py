@@ -132,6 +132,9 @@ def test_same_seed_same_route_and_the_global_state_is_left_alone():
     assert np.array_equal(before, np.random.get_state()[1])  # noqa: NPY002
 
 
+RISK = module.Weights(1.0, 0.0, 0.0, False)
+
+
 def ends_of(risk_map, *ends):
     limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
     return module.flyable_endpoints(risk_map, *ends, limits)
@@ -142,7 +145,7 @@ def near(risk_map, route, waypoints=7):
     points = (route.points - risk_map.city.origin) / risk_map.city.cell
     limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
     price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
-    task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, limits, True)
+    task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, RISK, limits, True)
     cost = task.costs(task.nearest(points, waypoints + 2)[None], 8)[0]
     return cost if cost < task.unflyable else np.inf
 
@@ -205,7 +208,7 @@ def test_points_on_planes_stay_on_the_map_and_reach_its_walls():
         ((9, 11, 1), (9, 11, 11)),
         ((37, 3, 3), (31, 21, 9)),
     ):
-        task = module.task_of(risk_map, ends_of(risk_map, *ends), price, limits, True)
+        task = module.task_of(risk_map, ends_of(risk_map, *ends), price, RISK, limits, True)
         space = module.space_of(task, 5, "planes")
         corners = np.array(list(itertools.product((0, 1), repeat=2)))
         low, high = space.bounds.reshape(5, 2, 2)[..., 0], space.bounds.reshape(5, 2, 2)[..., 1]
@@ -222,7 +225,7 @@ def test_arcs_are_curves_on_the_map_that_bend_to_both_sides():
     risk_map = campus(0)
     limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
     price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
-    task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, limits, True)
+    task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, RISK, limits, True)
     arcs = module.arcs_between(task, 7, 2000, np.random.default_rng(0))
     assert arcs.shape == (2000, 9, 3)
     assert (arcs[:, 0] == task.source).all()

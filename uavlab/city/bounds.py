@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uavlab import checks
 from uavlab.city.model import City
 from uavlab.city.segments import ROUNDING, Runs, nearest_run, runs_of, shares_between
 from uavlab.compiled import compiled
@@ -21,22 +22,28 @@ class Bounds(NamedTuple):
     keep: float  # from obstacles
     zones: Runs
     apart: float  # from no-fly zones
-    lowest: np.ndarray  # (nx, ny)
-    highest: np.ndarray
+    lowest: np.ndarray  # (nx, ny, 1 or nz)
+    highest: np.ndarray  # (nx, ny)
     limited: bool  # whether there are such heights at all
     shape: tuple[int, int, int]
 
 
-def bounds_of(city: City, min_clearance: float = 0.0, min_height: float = 0.0, max_height: float = np.inf) -> Bounds:
+def bounds_of(
+    city: City,
+    min_clearance: float = 0.0,
+    min_height: float = 0.0,
+    max_height: float = np.inf,
+    safe_height: float = 0.0,
+) -> Bounds:
     """The bounds of a city; a touch is too near, and what is as near as asked for, to rounding, is far enough."""
     city.blocked(min_clearance, min_height=min_height, max_height=max_height)  # refuses what is out of range
+    checks.not_negative_number("safe_height", safe_height)
     slack = slack_of(city)
-    ground = city.range_of_ground
-    heights = height_limits(city, ground[1] + min_height, ground[0] + max_height)
+    heights = height_limits(city, min_height, max_height, safe_height)
     return Bounds(
         city.runs, max(min_clearance / city.cell - slack, slack),
         runs_of(city.in_no_fly), slack,
-        *heights, min_height > 0 or max_height < np.inf, city.shape,
+        *heights, min_height > 0 or max_height < np.inf or safe_height > 0, city.shape,
     )  # fmt: skip
 
 
@@ -50,9 +57,14 @@ def slack_of(city: City) -> float:
     return ROUNDING + rounding_of(city)
 
 
-def height_limits(city: City, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Least and greatest z [cells] from those in metres, with room for rounding; not to be written to."""
+def height_limits(
+    city: City, min_height: float, max_height: float, safe_height: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Least z (nx, ny, 1 or nz) and greatest (nx, ny) [cells], with room for rounding; not to be written to."""
     slack = slack_of(city)
+    low, high = city.range_of_ground[1][..., None] + min_height, city.range_of_ground[0] + max_height
+    if safe_height > 0:
+        low = np.maximum(low, city.surface_below + safe_height)
     limits = (low - city.origin[2]) / city.cell - slack, (high - city.origin[2]) / city.cell + slack
     for array in limits:
         array.setflags(write=False)
@@ -91,10 +103,12 @@ def legs_keep(bounds, points, aside, rise):
 
 @compiled
 def least_room(lowest, highest, start, end, aside):
-    """How far a leg stays above `lowest` and below `highest` (nx, ny) [cells] in each column within `aside` of it.
+    """How far a leg stays above `lowest` (nx, ny, 1 or nz) and below `highest` [cells] in each column within `aside`.
 
-    Negative where it doesn't; beyond the map there are no limits.
+    Negative where it doesn't; beyond the map there are no limits. Between its ends in a free column nothing begins
+    that it would have to be above.
     """
+    top = lowest.shape[2] - 1
     room = np.inf
     dx, dy, dz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     west, east = min(start[0], end[0]) - aside, max(start[0], end[0]) + aside
@@ -108,5 +122,7 @@ def least_room(lowest, highest, start, end, aside):
             if until - within <= 1e-12 and (dx != 0.0 or dy != 0.0):
                 continue  # it touches only an edge of the column
             one, other = start[2] + within * dz, start[2] + until * dz
-            room = min(room, min(one, other) - lowest[i, j], highest[i, j] - max(one, other))
+            for z in (one, other):
+                below = lowest[i, j, min(max(math.floor(z), 0), top)]
+                room = min(room, z - below, highest[i, j] - z)
     return room

@@ -223,6 +223,36 @@ class City:
             return np.zeros(self.shape)
         return np.maximum(0.0, self.wall_normal @ -direction)
 
+    def clearance_along(self, offset: npt.ArrayLike, *, at_most: float = np.inf) -> np.ndarray:
+        """Least distance to obstacles on the way from each voxel's centre to where an offset takes it.
+
+        Parameters
+        ----------
+        offset : (2,) or (3,) array
+            (east, north[, up]) [m].
+        at_most : float
+            Where it is more than this [m], this is given instead, and found sooner.
+
+        Returns
+        -------
+        (nx, ny, nz) array
+            [m], exact; `clearance` for an offset of 0.
+
+        Raises
+        ------
+        ValueError
+            If the offset isn't two or three finite numbers, or `at_most` is negative.
+        """
+        way = np.array(checks.three("offset", offset))
+        checks.number("at_most", at_most)
+        checks.refuse(np.asarray(at_most), np.asarray(at_most) >= 0, "at_most must be a distance in metres, at least 0")
+        least = np.minimum(self.clearance, at_most)
+        if way.any():
+            index = np.argwhere((self.clearance - np.linalg.norm(way) < at_most) & ~self.occupied)
+            begin, there = self.center_of(index), tuple(index.T)
+            least[there] = self.segment_distance(begin, begin + way, at_most=least[there])
+        return least
+
     @cached_property
     def range_of_ground(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest ground in each column, (nx, ny) each [m]; without terrain the bottom of the map."""

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
+from uavlab.city.bounds import rounding_of
 from uavlab.compiled import compiled
 from uavlab.planners.grid import BOXES, LENGTHS, blocked_around_node, steps_of
 from uavlab.planners.least_risk import (
@@ -23,15 +24,18 @@ from uavlab.planners.least_risk import (
     NO_HEADING,
     STATES,
     Query,
+    checked_length,
     checked_limits,
+    city_lengths,
     edge,
+    finished,
     flyable_endpoints,
     price_per_cell,
+    priced_by,
     query_of,
     solve,
     state_after,
     what_binds,
-    with_vertical_legs,
 )
 from uavlab.risk import RiskMap
 from uavlab.route import Route
@@ -80,6 +84,7 @@ def ant_colony(
     threat: float = 0.0,
     max_turn: float = MAX_TURN,
     max_pitch: float = MAX_PITCH,
+    max_length: float | None = None,
     min_clearance: float = 0.0,
     min_height: float | None = None,
     max_height: float = np.inf,
@@ -94,8 +99,10 @@ def ant_colony(
 
     Parameters
     ----------
-    risk_map, start, goal, risk, length, threat, max_turn, max_pitch, min_clearance, min_height, max_height, drift
-        As for `least_risk`, which finds the least cost there is.
+    risk_map, start, goal, risk, length, threat, max_turn, max_pitch, max_length
+        As for `least_risk`, which finds the least cost there is. Ants whose way gets too long give up.
+    min_clearance, min_height, max_height, drift
+        As for `least_risk`, too.
     rng : numpy.random.Generator or int
         Or a seed for one.
     budget : int
@@ -148,6 +155,7 @@ def ant_colony(
     if budget < least:
         raise ValueError(f"budget must be at least {least}, for {ants} ants and {splits} splits, got {budget}")
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
+    longest = checked_length(max_length) / risk_map.city.cell * (1 + rounding_of(risk_map.city))
     price = price_per_cell(risk_map, risk, length, threat, drift)
     between = flyable_endpoints(risk_map, start, goal, limits)
     query = query_of(risk_map, price, between.source, between.target, limits)
@@ -156,13 +164,13 @@ def ant_colony(
     colony = Colony(query, habits, height_guided, as_printed, ants, rng)
     half = budget // (splits + 1) // 2
     ends, nothing = np.array([query.source, query.target]), np.empty(0, np.int64)
-    found = forage(colony, ends, nothing, nothing, budget - 2 * splits * half, record)
+    found = forage(colony, ends, nothing, nothing, budget - 2 * splits * half, longest, record)
     pieces, searches, total = [found.nodes], [found], found.cost
     history = [np.minimum.accumulate(found.costs)]
     for _ in range(splits):
         most = max(range(len(pieces)), key=lambda piece: len(pieces[piece]))
         if len(pieces[most]) < 3:  # no route yet, or none that can be split: one more search for the whole
-            found = forage(colony, ends, nothing, nothing, 2 * half)
+            found = forage(colony, ends, nothing, nothing, 2 * half, longest)
             history.append(np.minimum(np.minimum.accumulate(found.costs), total))
             if found.cost < total:
                 pieces, total = [found.nodes], found.cost
@@ -171,7 +179,8 @@ def ant_colony(
         middle = len(pieces[most]) // 2
         pieces[most : most + 1] = [pieces[most][: middle + 1], pieces[most][middle:]]
         for at in (most, most + 1):
-            found = forage(colony, pieces[at], joined(pieces[:at]), joined(pieces[at + 1 :]), half)
+            others = sum(way_length(query, piece) for number, piece in enumerate(pieces) if number != at)
+            found = forage(colony, pieces[at], joined(pieces[:at]), joined(pieces[at + 1 :]), half, longest - others)
             saved = way_cost(query, pieces[at], moves_of(query, pieces[at])) - found.costs
             history.append(total - np.maximum(np.maximum.accumulate(saved), 0.0))
             if saved.max() > 0:
@@ -190,14 +199,15 @@ def ant_colony(
     city, nodes = risk_map.city, joined(pieces)
     if len(nodes) == 0:
         reason = f"none of {len(walked)} ants arrived from {checks.show(start)} at {checks.show(goal)}: "
-        if len(solve(query, True)[0]) == 0:
-            reason += f"there is no way; {what_binds(risk_map, query, limits, None)}"
+        shortest = solve(city_lengths(query), True)[1]
+        if shortest == np.inf or shortest > longest:
+            reason += f"there is no way; {what_binds(risk_map, query, limits, max_length)}"
         else:
             reason += "each ran into a dead end of voxels it may not turn to, or had visited; more ants may help, or a "
-            reason += "larger max_turn"
+            reason += "larger max_turn" if longest == np.inf else "larger max_turn or max_length"
         return Route(np.empty((0, 3)), "ant colony", reached=False, reason=reason, cost=np.inf, info=info)
     route = Route(city.center_of(city.index_of(nodes)), "ant colony", cost=total, info=info)
-    return with_vertical_legs(route, city, between, price)
+    return finished(route, between, price, priced_by(risk, threat, drift), max_length)
 
 
 def checked_habits(
@@ -240,9 +250,18 @@ TAKEN = -1
 
 
 def forage(
-    colony: Colony, piece: np.ndarray, before: np.ndarray, after: np.ndarray, budget: int, record: bool = False
+    colony: Colony,
+    piece: np.ndarray,
+    before: np.ndarray,
+    after: np.ndarray,
+    budget: int,
+    longest: float,
+    record: bool = False,
 ) -> Search:
-    """Search a way from the first to the last node of a piece, to go between the nodes before and after it."""
+    """Search a way from the first to the last node of a piece, to go between the nodes before and after it.
+
+    No longer than `longest` cells.
+    """
     source, target = int(piece[0]), int(piece[-1])
     query, habits = colony.query._replace(source=source, target=target), colony.habits
     come, go = level_moves(query, before), level_moves(query, after)
@@ -260,7 +279,7 @@ def forage(
         ends, found, lengths = generation(
             query, trail, log(habits.least) - faded, look, habits.alpha,
             MOVE_HEADING[come[-1]] if len(come) else NO_HEADING, go[0] if len(go) else NO_MOVE,
-            seen, made + 1, colony.rng, ways[:count],
+            seen, made + 1, colony.rng, ways[:count], longest,
         )  # fmt: skip
         made += count
         leader = found.argmin()
@@ -311,12 +330,12 @@ def log(value: float) -> float:
 
 
 @compiled
-def generation(query, trail, least, look, alpha, heading, then, seen, mark, rng, ways):
+def generation(query, trail, least, look, alpha, heading, then, seen, mark, rng, ways, longest):
     """Let ants walk, one row of `ways` each: how many nodes (0 for none that arrive), cost, and length [cells]."""
     ends, costs, lengths = np.zeros(len(ways), np.int64), np.full(len(ways), np.inf), np.zeros(len(ways))
     for ant in range(len(ways)):
         ends[ant], cost, lengths[ant] = walk(
-            query, trail, least, look, alpha, heading, then, seen, mark + ant, rng, ways[ant]
+            query, trail, least, look, alpha, heading, then, seen, mark + ant, rng, ways[ant], longest
         )
         if ends[ant] > 0:
             costs[ant] = cost
@@ -324,7 +343,7 @@ def generation(query, trail, least, look, alpha, heading, then, seen, mark, rng,
 
 
 @compiled
-def walk(query, trail, least, look, alpha, heading, then, seen, mark, rng, nodes):
+def walk(query, trail, least, look, alpha, heading, then, seen, mark, rng, nodes, longest):
     """One ant's way from source to target, into `nodes`: how many there are (0 in a dead end), cost, length [cells].
 
     It comes with a heading, and leaves the target with the move `then`. It visits no node that is TAKEN, and none
@@ -360,6 +379,8 @@ def walk(query, trail, least, look, alpha, heading, then, seen, mark, rng, nodes
         neighbour = node + steps[chosen]
         cost += edge(query, chosen, node, neighbour)
         length += LENGTHS[chosen]
+        if length > longest:
+            return 0, np.inf, 0.0
         heading = state_after(heading, chosen, neighbour) % STATES
         node = neighbour
         nodes[count] = node
@@ -406,6 +427,10 @@ def way_cost(query, nodes, moves):
     for leg in range(len(moves)):
         cost += edge(query, moves[leg], nodes[leg], nodes[leg + 1])
     return cost
+
+
+def way_length(query: Query, nodes: np.ndarray) -> float:
+    return float(LENGTHS[moves_of(query, nodes)].sum())
 
 
 def joined(pieces: list[np.ndarray]) -> np.ndarray:

@@ -101,7 +101,7 @@ def astar(
         as_printed=as_printed,
         record=record,
     )
-    return ends.added_to(route, city, None if as_printed else prices)
+    return ends.added_to(route, None if as_printed else prices, priced="" if price is None else "price")
 
 
 def cheapest_route(

@@ -13,13 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab.checks import frozen
-from uavlab.city.bounds import height_limits, slack_of
+from uavlab.city.bounds import height_limits, rounding_of, slack_of
 from uavlab.city.segments import Runs, least_to_expect, segment_clearance
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
-from uavlab.planners.least_risk import Limits
+from uavlab.planners.least_risk import Limits, base_price, priced_by
 from uavlab.planners.question import Ends
 from uavlab.risk import RiskMap
+from uavlab.risk.drift import NO_FALLS, Falls, rate_ahead
 from uavlab.spline.basis import cubic_bspline, fitted, spread, subdivided
 
 PER_SEGMENT = 8
@@ -35,26 +36,32 @@ LONGEST = 1000
 class Sky(NamedTuple):
     """A map for compiled code."""
 
-    price: np.ndarray  # (nx, ny, nz): cost per cell of way
+    price: np.ndarray  # (nx, ny, nz): cost per cell of way, whatever its direction
+    falls: Falls  # what depends on the direction
+    ahead: float  # weight of the risk where the wreck lands
     closed: np.ndarray  # (nx, ny, nz) bool: obstacles and no-fly zones
-    lowest: np.ndarray  # (nx, ny, nz): least z of a point in each voxel [cells]
+    lowest: np.ndarray  # (nx, ny, 1 or nz): least z of a point in each voxel [cells]
     highest: np.ndarray  # (nx, ny): greatest z in each column [cells]
     obstacles: Runs
     clearance: np.ndarray  # (nx, ny, nz): of the centres [cells]; not looked at where `keep` is 0
     keep: float  # least distance to obstacles [cells]
     max_turn: float
     max_pitch: float
+    longest: float  # [cells]
 
 
-def sky_of(risk_map: RiskMap, price: np.ndarray, limits: Limits) -> Sky:
-    """The limits at each point of a curve, at a price (nx, ny, nz) per cell of way."""
+def sky_of(risk_map: RiskMap, price: np.ndarray, limits: Limits, risk_ahead: float, max_length: float) -> Sky:
+    """The limits at each point of a curve, at a price (nx, ny, nz) per cell of way, and for the risk ahead."""
     city = risk_map.city
-    lowest, highest = city.range_of_ground
-    low = np.maximum(city.surface_below + limits.safe_height, (highest + limits.min_height)[..., None])
-    heights = height_limits(city, low, lowest + limits.max_height)
+    heights = height_limits(city, limits.min_height, limits.max_height, limits.safe_height)
     keep = max(limits.min_clearance / city.cell - slack_of(city), 0.0)
     clearance = city.clearance / city.cell if keep > 0 else np.empty((0, 0, 0))
-    return Sky(price, city.blocked(), *heights, city.runs, frozen(clearance), keep, limits.max_turn, limits.max_pitch)
+    longest = max_length / city.cell * (1 + rounding_of(city)) + SLACK
+    return Sky(
+        price, risk_map.falls if risk_ahead > 0 else NO_FALLS, risk_ahead,
+        city.blocked(), *heights, city.runs, frozen(clearance), keep,
+        limits.max_turn, limits.max_pitch, longest,
+    )  # fmt: skip
 
 
 class Task(NamedTuple):
@@ -73,8 +80,8 @@ class Task(NamedTuple):
 
     def costs(self, control: np.ndarray, per_segment: int) -> np.ndarray:
         """Costs (N,) of curves (N, K + 2, 3); whichever breaks a limit costs more than any that doesn't."""
-        costs, shut, angles = costs_of(self.sky, self.lines(control, per_segment))
-        broken = shut + angles
+        costs, shut, angles, longer = costs_of(self.sky, self.lines(control, per_segment))
+        broken = shut + angles + longer
         return costs + np.where(broken > 0, self.unflyable + self.breach * broken, 0.0)
 
     def finer(self, control: np.ndarray) -> np.ndarray:
@@ -90,12 +97,38 @@ class Task(NamedTuple):
         return fitted(points, count) if self.spline else spread(points, count)
 
 
-def task_of(risk_map: RiskMap, ends: Ends, price: np.ndarray, limits: Limits, spline: bool) -> Task:
-    """The question of `least_risk`, for curves: from the centre of the start's voxel to that of the goal's."""
+class Weights(NamedTuple):
+    """What a metre costs, see `least_risk`."""
+
+    risk: float
+    length: float
+    threat: float
+    drift: bool
+
+    @property
+    def priced(self) -> str:
+        return priced_by(self.risk, self.threat, self.drift)
+
+
+def task_of(
+    risk_map: RiskMap,
+    ends: Ends,
+    price: np.ndarray,
+    weights: Weights,
+    limits: Limits,
+    spline: bool,
+    max_length: float = np.inf,
+) -> Task:
+    """The question of `least_risk`, for curves: from the centre of the start's voxel to that of the goal's.
+
+    At the price (1 or 26, nx·ny·nz) of those weights.
+    """
     city = risk_map.city
     source, target = city.index_of(np.array((ends.source, ends.target))) + 0.5
-    sky = sky_of(risk_map, price.reshape(city.shape), limits)
-    highest = float(sky.price[~sky.closed].max())
+    ahead = weights.risk if weights.drift else 0.0
+    level = base_price(risk_map, 0.0, *weights[1:3]) if ahead > 0 else price
+    sky = sky_of(risk_map, level.reshape(city.shape), limits, ahead, max_length)
+    highest = float(price[:, ~sky.closed.ravel()].max())
     return Task(sky, source, target, spline, 10 * highest, LONGEST * sum(city.shape) * highest)
 
 
@@ -131,20 +164,27 @@ class Measure:
 
 @compiled
 def costs_of(sky, lines):
-    """Of polylines (N, P, 3): cost [price·cells], way where it may not be [cells], and excess of angles [rad]."""
-    costs, shut, angles = np.zeros(len(lines)), np.zeros(len(lines)), np.zeros(len(lines))
+    """Of polylines (N, P, 3): cost [price·cells], way where it may not be [cells], and excess of angles [rad].
+
+    And by how much it is too long [cells].
+    """
+    costs, shut = np.zeros(len(lines)), np.zeros(len(lines))
+    angles, longer = np.zeros(len(lines)), np.zeros(len(lines))
     for n in range(len(lines)):
+        length = 0.0
         for p in range(lines.shape[1] - 1):
-            cost, breach = along(sky, lines[n, p], lines[n, p + 1])
+            cost, breach, leg = along(sky, lines[n, p], lines[n, p + 1])
             costs[n] += cost
             shut[n] += breach
+            length += leg
             angles[n] += excess(sky, lines[n], p)
-    return costs, shut, angles
+        longer[n] = max(length - sky.longest, 0.0)
+    return costs, shut, angles, longer
 
 
 @compiled
 def along(sky, start, end):
-    """∫ price ds over a straight leg, and how much of it is where it may not be [cells].
+    """∫ price ds over a straight leg, how much of it is where it may not be [cells], and its length [cells].
 
     That is in voxels that are closed, off the map, too low or too high; all of it, if it comes too near to an obstacle.
     """
@@ -158,18 +198,21 @@ def along(sky, start, end):
         stay = (leave[m] - entered) * length
         if 0 <= i < nx and 0 <= j < ny and 0 <= k < nz:
             z, w = start[2] + entered * climb, start[2] + leave[m] * climb
-            cost += stay * sky.price[i, j, k]
+            price = sky.price[i, j, k]
+            if sky.ahead > 0.0:
+                price += sky.ahead * rate_ahead(sky.falls, end[0] - start[0], end[1] - start[1], climb, i, j, k)
+            cost += stay * price
             if sky.closed[i, j, k]:
                 shut += stay
             else:
-                shut += stay * share_outside(z, w, sky.lowest[i, j, k], sky.highest[i, j])
+                shut += stay * share_outside(z, w, sky.lowest[i, j, min(k, sky.lowest.shape[2] - 1)], sky.highest[i, j])
         else:
             shut += stay
         entered = leave[m]
     near = sky.keep > 0.0 and shut < length and least_to_expect(sky.clearance, 1.0, start, end) < sky.keep
     if near and segment_clearance(sky.obstacles, start, end, sky.keep) < sky.keep:
         shut = length
-    return cost, shut
+    return cost, shut, length
 
 
 @compiled
@@ -207,10 +250,11 @@ def excess(sky, line, p):
 
 def breaches(task: Task, line: np.ndarray, cell: float) -> str:
     """Words for the limits that a curve (P, 3) breaks."""
-    _, shut, _ = costs_of(task.sky, line[None])
+    _, shut, _, longer = costs_of(task.sky, line[None])
     climbs = costs_of(task.sky._replace(max_turn=np.inf), line[None])[2]
     turns = costs_of(task.sky._replace(max_pitch=np.inf), line[None])[2]
     words = [f"flies {shut[0] * cell:.1f} m where it may not"] if shut[0] > 0 else []
     words += ["climbs more than max_pitch"] if climbs[0] > 0 else []
     words += ["turns more than max_turn"] if turns[0] > 0 else []
+    words += [f"is {longer[0] * cell:.1f} m longer than max_length"] if longer[0] > 0 else []
     return ", ".join(words)

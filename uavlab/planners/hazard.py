@@ -20,6 +20,12 @@ from uavlab.planners.question import Airspace, endpoints
 from uavlab.planners.shortcut import shortcut
 from uavlab.route import Route
 
+RADIUS = 0.5
+"""Half of the papers' body [m]."""
+
+NO_HAZARD = 40.0
+"""So many σ away the chance is no number above 0."""
+
 CRASH_PRICE = 3000.0
 """λ [m]: how many metres of detour a crash is worth, when it is certain."""
 
@@ -28,7 +34,7 @@ def hazard_price(
     city: City,
     sigma: float,
     *,
-    uav_radius: float = 0.5,
+    uav_radius: float = RADIUS,
     mean_offset: npt.ArrayLike = (0.0, 0.0, 0.0),
     speed: float = 5.0,
     natural_frequency: float = 1.0,
@@ -42,10 +48,10 @@ def hazard_price(
     sigma : float
         σ of the offset on one axis [m], above 0.
     uav_radius : float
-        r [m], at least 0. The margin is u = clearance − r − max(0, −μ·n), at least 0.
+        r [m], at least 0. The margin is u = D − r, at least 0, with D the least distance to obstacles on the way from
+        the route to where the mean offset holds the UAV.
     mean_offset : (2,) or (3,) array
-        μ, where the steady wind holds the UAV, from its route [m]; n points away from the nearest wall. Away from it
-        gives no credit: there may be another wall.
+        μ, where the steady wind holds the UAV, from its route [m]. Away from a wall it gives no credit.
     speed : float
         v over ground [m/s], above 0: who passes faster is exposed for less time.
     natural_frequency : float
@@ -75,7 +81,7 @@ def hazard_price(
 def cached_price(
     city: City, sigma: float, uav_radius: float, mean_offset: tuple[float, ...], crash_price: float
 ) -> np.ndarray:
-    margin = np.minimum(city.clearance, 100.0 * sigma) - uav_radius - city.towards_wall(mean_offset)
+    margin = city.clearance_along(mean_offset, at_most=uav_radius + NO_HAZARD * sigma) - uav_radius
     return locked(1.0 + crash_price * crossing_rate(np.maximum(margin, 0.0), sigma))
 
 
@@ -85,6 +91,7 @@ def hazard_astar(
     goal: npt.ArrayLike,
     *,
     sigma: float,
+    uav_radius: float = RADIUS,
     any_angle: bool = True,
     min_height: float = 0.0,
     max_height: float = np.inf,
@@ -99,6 +106,8 @@ def hazard_astar(
         Positions [m].
     sigma : float
         σ of the offset on one axis [m], above 0.
+    uav_radius : float
+        Half the body [m]: nothing on the route is nearer to an obstacle.
     any_angle : bool
         Join by straight lines what that makes no dearer, see `shortcut`.
     min_height, max_height : float
@@ -116,11 +125,11 @@ def hazard_astar(
     ValueError
         If start or goal can't be flown from or to, or an argument is out of its range.
     """
-    price = hazard_price(city, sigma, **hazard)  # type: ignore[arg-type]
-    airspace = Airspace(city, 0.0, min_height, max_height)
+    price = hazard_price(city, sigma, uav_radius=uav_radius, **hazard)  # type: ignore[arg-type]
+    airspace = Airspace(city, 0.0, min_height, max_height, radius=uav_radius)
     ends = endpoints(airspace, start, goal)
     route = cheapest_route(city, ends.source, ends.target, airspace.blocked, price, cheapest=1.0)
-    route = ends.added_to(route, city, price)
+    route = ends.added_to(route, price, priced="hazard")
     if any_angle:
-        route = shortcut(route, city, price=price, min_height=min_height, max_height=max_height)
+        route = shortcut(route, city, price=price)
     return replace(route, planner="hazard A*")

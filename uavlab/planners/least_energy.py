@@ -92,7 +92,7 @@ def least_energy(
         reason = f"{ways}: all {np.count_nonzero(parent)} voxels within reach were searched"
         return Route(np.empty((0, 3)), "least energy", reached=False, reason=reason, cost=np.inf, info=info)
     nodes = trace(parent, ends.source, ends.target, city.shape)
-    route = ends.added_to(Route(city.center_of(city.index_of(nodes)), "least energy", info=info), city)
+    route = ends.added_to(Route(city.center_of(city.index_of(nodes)), "least energy", info=info), priced="energy")
     legs = np.diff(route.points, axis=0)
     return replace(route, cost=float((route.leg_lengths * per_metre(legs)).sum()))
 

@@ -45,6 +45,8 @@ UPWARDS = int(np.flatnonzero((MOVES == (0, 0, 1)).all(axis=1))[0])
 
 MOVE_PITCH = np.abs(np.arctan2(MOVES[:, 2], np.hypot(MOVES[:, 0], MOVES[:, 1])))
 
+RISK_AHEAD = "risk where the wreck lands"
+
 LEAST_PRICE = 1e-15
 """Of the highest price, the least that a voxel costs: over a lake, where nobody is at risk, a short way is taken."""
 
@@ -113,16 +115,15 @@ def least_risk(
     began = time.perf_counter()
     if heuristic not in ("backward", "zero"):
         raise ValueError(f"heuristic must be 'backward' or 'zero', got {heuristic!r}")
-    if max_length is not None:
-        checks.positive_number("max_length", max_length)
+    allowed = checked_length(max_length)
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     price = price_per_cell(risk_map, risk, length, threat, drift)
     ends = flyable_endpoints(risk_map, start, goal, limits)
     query = query_of(risk_map, price, ends.source, ends.target, limits)
-    if max_length is None:
+    if allowed == np.inf:
         nodes, cost, expanded = solve(query, heuristic == "backward")
     else:
-        longest = max_length / risk_map.city.cell * (1 + rounding_of(risk_map.city))  # of each move
+        longest = allowed / risk_map.city.cell * (1 + rounding_of(risk_map.city))  # of each move
         routes, expanded = constrained(query, city_lengths(query), np.array([longest]))
         nodes, cost = routes[0] if routes else (np.empty(0, np.int64), np.inf)
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
@@ -133,12 +134,19 @@ def least_risk(
         return Route(np.empty((0, 3)), name, reached=False, reason=reason, cost=np.inf, info=info)
     city = risk_map.city
     route = Route(city.center_of(city.index_of(nodes)), name, cost=cost, info=info)
-    return with_vertical_legs(route, city, ends, price)
+    return finished(route, ends, price, priced_by(risk, threat, drift), max_length)
 
 
-def with_vertical_legs(route: Route, city: City, ends: Ends, price: np.ndarray) -> Route:
-    """The route with take-off and landing, at a price per cell of way (1 or 26, nodes)."""
-    return ends.added_to(route, city, price[UPWARDS if len(price) > 1 else 0] / city.cell)
+def finished(route: Route, ends: Ends, price: np.ndarray, priced: str, max_length: float | None = None) -> Route:
+    """The route with take-off and landing, at a price per cell of way (1 or 26, nodes), and what it promises."""
+    upwards = price[UPWARDS if len(price) > 1 else 0] / ends.airspace.city.cell
+    return ends.added_to(route, upwards, priced=priced, max_length=np.inf if max_length is None else max_length)
+
+
+def priced_by(risk: float, threat: float, drift: bool) -> str:
+    """What a route with these weights pays for beside its length, see `Route.priced`."""
+    words = [RISK_AHEAD if drift else "risk"] if risk > 0 else []
+    return " and ".join(words + ["threat"] * (threat > 0))
 
 
 def pareto_front(
@@ -209,7 +217,7 @@ def pareto_front(
     found = [
         Route(city.center_of(city.index_of(nodes)), "least risk", cost=cost, info=dict(info)) for nodes, cost in routes
     ]
-    return [with_vertical_legs(route, city, ends, price) for route in found]
+    return [finished(route, ends, price, priced_by(1.0, 0.0, drift), route.length) for route in found]
 
 
 class Limits(NamedTuple):
@@ -259,12 +267,20 @@ def price_per_cell(risk_map: RiskMap, risk: float, length: float, threat: float,
         checks.not_negative_number(name, weight)
     if risk == length == threat == 0:
         raise ValueError("risk, length and threat are all 0: give at least one of them a weight above 0")
-    price = np.full((1, *risk_map.city.shape), length * risk_map.city.cell)
-    if risk > 0:
-        price = price + risk * (risk_map.rate_ahead if drift else risk_map.rate)
-    if threat > 0:
-        price = price + threat * risk_map.threat
+    price = base_price(risk_map, 0.0 if drift else risk, length, threat)[None]
+    if drift and risk > 0:
+        price = price + risk * risk_map.rate_ahead
     return np.maximum(price, LEAST_PRICE * price.max() + 1e-300).reshape(len(price), -1)
+
+
+def base_price(risk_map: RiskMap, risk: float, length: float, threat: float) -> np.ndarray:
+    """Cost per cell of way, whatever its direction, (nx, ny, nz)."""
+    price = np.full(risk_map.city.shape, length * risk_map.city.cell)
+    if risk > 0:
+        price += risk * risk_map.rate
+    if threat > 0:
+        price += threat * risk_map.threat
+    return price
 
 
 def checked_limits(
@@ -284,6 +300,15 @@ def checked_limits(
     lowest = risk_map.min_height if min_height is None else min_height
     check_heights(lowest, max_height)
     return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, lowest, max_height)
+
+
+def checked_length(max_length: float | None) -> float:
+    """The greatest length [m], infinite for None."""
+    if max_length is None:
+        return np.inf
+    checks.number("max_length", max_length)
+    checks.refuse(np.asarray(max_length), np.asarray(max_length) > 0, "max_length must be above 0")
+    return float(max_length)
 
 
 def flyable_endpoints(risk_map: RiskMap, start: npt.ArrayLike, goal: npt.ArrayLike, limits: Limits) -> Ends:

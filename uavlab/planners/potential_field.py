@@ -133,7 +133,7 @@ def potential_field(
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     cost = np.inf if reason else length
     route = Route(points, "potential field", reached=not reason, reason=reason, cost=cost, info=info)
-    return ends.added_to(route, city)
+    return ends.added_to(route)
 
 
 ARRIVED, TRAPPED, CIRCLES, CRASHED, FORBIDDEN, GAVE_UP = range(6)

@@ -6,7 +6,7 @@ voxel above it that is high enough, and the vertical legs are added to what it f
 """
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,11 +15,11 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.model import locked
 from uavlab.risk.model import high_enough
-from uavlab.route import Route
+from uavlab.route import PROMISES, Route
 
 
 class Airspace(NamedTuple):
-    """Where a route may be."""
+    """Where a route may be. Between its start and its goal there must be a move: both in one voxel is an error."""
 
     city: City
     min_clearance: float = 0.0
@@ -27,18 +27,27 @@ class Airspace(NamedTuple):
     max_height: float = np.inf
     safe_height: float = 0.0
     """Least height above what lies below [m], of a risk map."""
+    radius: float = 0.0
+    """Of a body that must not touch anything [m], where greater distances are only dear."""
 
     @property
     def blocked(self) -> np.ndarray:
         """Where it may not be, (nx, ny, nz) bool."""
-        city, clearance, low, high, above = self
-        blocked = city.blocked(clearance, min_height=low, max_height=high)
-        return locked(blocked | ~high_enough(city, above)) if above > 0 else blocked
+        clearance = self.promises["min_clearance"]
+        blocked = self.city.blocked(clearance, min_height=self.min_height, max_height=self.max_height)
+        return locked(blocked | ~high_enough(self.city, self.safe_height)) if self.safe_height > 0 else blocked
+
+    @property
+    def promises(self) -> dict[str, Any]:
+        """What a route in it keeps, see `Route`."""
+        clearance = max(self.min_clearance, self.radius) if self.radius else self.min_clearance
+        return dict(zip(PROMISES, (clearance, self.min_height, self.max_height, self.safe_height), strict=True))
 
 
 class Ends(NamedTuple):
     """Codes of the voxels between which a way is looked for, and of those passed vertically before and after."""
 
+    airspace: Airspace
     source: int
     target: int
     takeoff: tuple[int, ...] = ()
@@ -46,8 +55,12 @@ class Ends(NamedTuple):
     landing: tuple[int, ...] = ()
     """From below the target down to the goal."""
 
-    def added_to(self, route: Route, city: City, price: np.ndarray | None = None) -> Route:
-        """The route with its vertical legs; `price` (nx, ny, nz) per metre is charged for them, too."""
+    def added_to(
+        self, route: Route, price: np.ndarray | None = None, *, priced: str = "", max_length: float = np.inf
+    ) -> Route:
+        """The route with what it promises, and its vertical legs, at a `price` (nx, ny, nz) per metre."""
+        city = self.airspace.city
+        route = replace(route, **self.airspace.promises, priced=priced, max_length=max_length)
         if not (self.takeoff or self.landing) or not len(route.points):
             return route
         before, after = (city.center_of(city.index_of(np.array(codes, int))) for codes in (self.takeoff, self.landing))
@@ -82,7 +95,7 @@ def endpoints(airspace: Airspace, start: npt.ArrayLike, goal: npt.ArrayLike) -> 
             f"start {checks.show(start)} and goal {checks.show(goal)} lie above each other, below "
             f"min_height={airspace.min_height:g} m, where only take-off and landing are allowed: ask for less"
         )
-    return Ends(source, target, takeoff, landing[::-1])
+    return Ends(airspace, source, target, takeoff, landing[::-1])
 
 
 def end_at(airspace: Airspace, blocked: np.ndarray, point: npt.ArrayLike, argument: str) -> tuple[int, tuple[int, ...]]:
@@ -129,6 +142,8 @@ def what_blocks(airspace: Airspace, blocked: np.ndarray, position: np.ndarray) -
     if city.out_of_heights(airspace.min_height, np.inf)[index]:
         return TOO_LOW
     clearance = city.clearance[index]
+    if clearance < airspace.radius - 1e-9 * city.cell:
+        return f"is {clearance:.2f} m from the nearest obstacle, the body needs {airspace.radius:g} m"
     if clearance < airspace.min_clearance:
         return f"is {clearance:.2f} m from the nearest obstacle, min_clearance asks for {airspace.min_clearance:g} m"
     above = city.height_above_surface[index]

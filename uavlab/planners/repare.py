@@ -131,7 +131,7 @@ def repare(
         return flight_conditions(load, observed, uav, reading=reading, clock=clock)
 
     now = conditions_at(0.0)
-    airspace = Airspace(city, 0.0, min_height, max_height)
+    airspace = Airspace(city, 0.0, min_height, max_height, radius=uav.diameter / 2)
     ends = endpoints(airspace, start, goal)
     if now.grounded:
         return Route(np.empty((0, 3)), "REPARE", reached=False, reason=f"grounded: {now.grounded}", cost=np.inf)
@@ -152,9 +152,11 @@ def repare(
 
     route = plan(city.center_of(city.index_of(ends.source)), now)
     if callable(disturbance) and route.reached:
-        return ends.added_to(replanned(route, now, plan, conditions_at, uav.cruise_speed, interval), city)
-    place = tuple(route.points[:1].ravel().tolist())
-    return ends.added_to(named(route, route.points, [Plan(0.0, place, now.name, now.safe_distance)]), city)
+        route = replanned(route, now, plan, conditions_at, uav.cruise_speed, interval)
+    else:
+        place = tuple(route.points[:1].ravel().tolist())
+        route = named(route, route.points, [Plan(0.0, place, now.name, now.safe_distance)])
+    return ends.added_to(route, priced="REPARE's zone")
 
 
 def replanned(
@@ -203,10 +205,11 @@ def refuse_swallowed(
 ) -> None:
     """`ValueError` if a start or goal lies in the zone; it says by how much and which point would do."""
     index = tuple(city.index_of(node))
-    widened = max(0.0, -float(city.wall_normal[index] @ mean_offset)) if any(mean_offset) else 0.0
+    center = city.center_of(index)
+    widened = float(city.clearance[index] - city.segment_distance(center, center + mean_offset))
     short = safe_distance + widened - float(city.clearance[index])
     if short > 1e-9 * city.cell:
-        outside = city.clearance >= safe_distance + city.towards_wall(mean_offset) - 1e-9 * city.cell
+        outside = city.clearance_along(mean_offset, at_most=safe_distance) >= safe_distance - 1e-9 * city.cell
         instead = "no voxel of the map keeps it"
         if outside.any():
             instead = nearest_allowed(city, city.center_of(index), outside)
@@ -292,8 +295,9 @@ def repare_price(
     """Price of a metre, 1 + ω(x)·O_risk(x), kept for the next query in the same conditions.
 
     ω = ω₀·(1 + |F_rep| + θ_F·max(0, −F_dist·n) + θ_G·λ) / F_tra, n away from the nearest wall, |F_tra| = 1 (conic),
-    |F_rep| = k_rep (1/D − 1/D_min)/D² with k_rep = D_min³/4. O_risk = 1 where D < D_min + max(0, −μ·n). All forces are
-    numbers: F_dist is the drag of the gusts over the thrust left against them, λ the weight over the thrust.
+    |F_rep| = k_rep (1/D − 1/D_min)/D² with k_rep = D_min³/4. O_risk = 1 where D < D_min anywhere on the way from the
+    voxel to where the mean offset μ holds the UAV, so before every wall that the wind blows to. All forces are numbers:
+    F_dist is the drag of the gusts over the thrust left against them, λ the weight over the thrust.
 
     Parameters
     ----------
@@ -333,7 +337,9 @@ def cached_price(
     shape: str,
 ) -> np.ndarray:
     penalty, force_weight, load_weight = weights
-    reach = now.safe_distance + city.towards_wall(mean_offset)
+    along = city.clearance_along(mean_offset, at_most=now.safe_distance)
+    widened = along < now.safe_distance - 1e-9 * city.cell
+    reach = now.safe_distance + np.where(widened, city.clearance - along, 0.0)
     near = np.minimum(city.clearance, reach)
     pushed = repulsion(np.maximum(near, city.cell / 2), now.safe_distance**3 / 4, now.safe_distance)
     blown = np.asarray(now.push)

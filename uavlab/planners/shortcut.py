@@ -18,7 +18,7 @@ from uavlab.city.segments import ROUNDING, distance_to_box
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
 from uavlab.planners.question import checked_price
-from uavlab.route import Route
+from uavlab.route import Route, promises_of
 
 
 def shortcut(
@@ -26,24 +26,27 @@ def shortcut(
     city: City,
     *,
     price: npt.ArrayLike | None = None,
-    min_clearance: float = 0.0,
-    min_height: float = 0.0,
-    max_height: float = np.inf,
+    min_clearance: float | None = None,
+    min_height: float | None = None,
+    max_height: float | None = None,
+    safe_height: float | None = None,
 ) -> Route:
-    """The cheapest route over a subset of the waypoints.
+    """The cheapest route over a subset of the waypoints; it keeps what the route promised, and is no longer.
 
     Parameters
     ----------
     route : Route
         With waypoints one or two cells apart the result is best; `route.resample` adds some.
     city : City
-    price : (nx, ny, nz) array, optional
-        Cost of a metre in each voxel, the one that the route was planned with; a leg costs the integral along it.
-    min_clearance : float
-        Least distance [m] that each leg keeps to obstacles, all along. 0: it touches none.
-    min_height, max_height : float
+    price : (nx, ny, nz) array or float, optional
+        Cost of a metre in each voxel, the one that the route was planned with; a leg costs the integral along it. A
+        route that was planned at a price needs one; 1.0 stands for its length alone.
+    min_clearance : float, optional
+        Least distance [m] that each leg keeps to obstacles, all along; by default the route's. 0: it touches none.
+    min_height, max_height, safe_height : float, optional
         Least and greatest height above ground [m], in each column that a leg passes: above the highest ground there,
-        below the lowest. Vertical take-off and landing stay as they are.
+        below the lowest; and least height above roofs. By default the route's. Vertical take-off and landing stay as
+        they are.
 
     Returns
     -------
@@ -54,22 +57,33 @@ def shortcut(
     Raises
     ------
     ValueError
-        If the route itself doesn't keep what is asked for; the message says between which waypoints.
+        If the route itself doesn't keep what is asked for, the message says between which waypoints; or it was planned
+        at a price and none is given.
     """
+    checks.instance("route", route, Route)
+    checks.instance("city", city, City)
     if not route.reached or len(route.points) < 2:
         return route
-    prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
+    if price is None and route.priced:
+        raise ValueError(
+            f"price must be the one that the route was planned with ({route.priced}), or straight lines lead where it "
+            "is dear; price=1.0 shortens by length alone"
+        )
+    prices, cheapest = (None, 1.0) if price is None or np.ndim(price) == 0 else checked_price(city, price)
+    promises = promises_of(
+        route, min_clearance=min_clearance, min_height=min_height, max_height=max_height, safe_height=safe_height
+    )
     free = route.en_route
     points = (free.points - city.origin) / city.cell
     same = ROUNDING if prices is None else ROUNDING * float(prices.max())
-    bounds = bounds_of(city, min_clearance, min_height, max_height)
+    bounds = bounds_of(city, **promises)
     best, before = cheapest_subset(points, bounds, prices, cheapest, same)
     if not np.isfinite(best).all():
         leg = int(np.flatnonzero(~np.isfinite(best))[0])
         ends = f"{leg - 1} {checks.show(free.points[leg - 1])} and {leg} {checks.show(free.points[leg])}"
         raise ValueError(
             f"route comes too near to an obstacle or a zone, too low or too high, between waypoints {ends}: "
-            f"shorten only routes that themselves keep min_clearance={min_clearance:g} m and the heights all along"
+            f"shorten only routes that themselves keep {told(promises)} all along"
         )
     kept = [len(points) - 1]
     while kept[-1] != 0:
@@ -80,7 +94,13 @@ def shortcut(
     cost = float(best[-1]) * city.cell
     for part in vertical:
         cost += part.length if prices is None else part.integral(city, prices)
-    return replace(route, points=points, planner=f"{route.planner} + shortcut", cost=cost)
+    priced = "" if prices is None else route.priced or "price"
+    return replace(route, points=points, planner=f"{route.planner} + shortcut", cost=cost, priced=priced, **promises)
+
+
+def told(promises: dict[str, float]) -> str:
+    """Promises as words."""
+    return ", ".join(f"{name}={value:g} m" for name, value in promises.items() if 0 < value < np.inf) or "off obstacles"
 
 
 @compiled

@@ -17,17 +17,19 @@ from uavlab import checks
 from uavlab.optimizers import Result, bas, pso, pso_bas
 from uavlab.optimizers.particle_swarm import SWARM
 from uavlab.planners.ant_colony import ANTS, ant_colony
-from uavlab.planners.curves import PER_SEGMENT, Measure, Task, breaches, costs_of, task_of
+from uavlab.planners.curves import PER_SEGMENT, Measure, Task, Weights, breaches, costs_of, task_of
 from uavlab.planners.least_risk import (
     MAX_PITCH,
     MAX_TURN,
+    RISK_AHEAD,
+    checked_length,
     checked_limits,
+    finished,
     flyable_endpoints,
     price_per_cell,
-    with_vertical_legs,
 )
 from uavlab.risk import RiskMap
-from uavlab.route import Route
+from uavlab.route import Route, promises_of
 
 OPTIMIZERS: dict[str, tuple[Callable[..., Result], dict[str, Any]]] = {
     "pso_bas": (pso_bas, {"probes": 5, "decay": 0.98}),
@@ -77,9 +79,11 @@ def waypoint_swarm(
     threat: float = 0.0,
     max_turn: float = MAX_TURN,
     max_pitch: float = MAX_PITCH,
+    max_length: float | None = None,
     min_clearance: float = 0.0,
     min_height: float | None = None,
     max_height: float = np.inf,
+    drift: bool = False,
     **settings: Any,
 ) -> Route:
     """A route of low cost along a few waypoints that a swarm moves (PSO-BAS section 4).
@@ -88,7 +92,7 @@ def waypoint_swarm(
 
     Parameters
     ----------
-    risk_map, start, goal, risk, length, threat, max_pitch, min_clearance, min_height, max_height
+    risk_map, start, goal, risk, length, threat, max_pitch, max_length, min_clearance, min_height, max_height
         As for `least_risk`.
     rng : numpy.random.Generator or int
         Or a seed for one.
@@ -113,6 +117,8 @@ def waypoint_swarm(
     max_turn : float
         Greatest change of heading [rad], at a corner; on legs shorter than a voxel per length of a voxel, as
         on the grid of `least_risk`.
+    drift : bool
+        Take the risk where the wreck lands, in each leg's own direction; the ants of "pso_aco" know those of the grid.
     **settings
         For the optimiser, such as `swarm=10` or `as_printed=True`.
 
@@ -146,10 +152,13 @@ def waypoint_swarm(
         raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
     if initial is not None:
         checks.instance("initial", initial, Route)
-    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
-    price = price_per_cell(risk_map, risk, length, threat, drift=False)
+    limits, weights = (
+        checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height),
+        Weights(risk, length, threat, drift),
+    )
+    longest, price = checked_length(max_length), price_per_cell(risk_map, *weights)
     ends = flyable_endpoints(risk_map, start, goal, limits)
-    task = task_of(risk_map, ends, price, limits, curve == "spline")
+    task = task_of(risk_map, ends, price, weights, limits, curve == "spline", longest)
     space = space_of(task, waypoints, encoding)
     swarm = 1 if optimizer == "bas" else settings.get("swarm", SWARM)
     ants, left, last = shares(budget, optimizer, arcs, refinement, swarm)
@@ -157,7 +166,8 @@ def waypoint_swarm(
     if ants:
         walked = ant_colony(
             risk_map, start, goal, rng=rng, budget=ants, risk=risk, length=length, threat=threat, max_turn=max_turn,
-            max_pitch=max_pitch, min_clearance=min_clearance, min_height=min_height, max_height=max_height,
+            max_pitch=max_pitch, max_length=max_length, min_clearance=min_clearance, min_height=min_height,
+            max_height=max_height, drift=drift,
         )  # fmt: skip
         measure.note(walked.info["history"], walked.info["iterations"])
         initial = walked if walked.reached else initial
@@ -173,7 +183,7 @@ def waypoint_swarm(
     measure.iterations += (before + found.iterations).tolist()
     if last:
         move_finer(measure, space, found, last, rng)
-    route = with_vertical_legs(route_of(measure, risk_map, f"{optimizer} waypoints"), risk_map.city, ends, price)
+    route = finished(route_of(measure, risk_map, f"{optimizer} waypoints"), ends, price, weights.priced, max_length)
     if ants and walked.cost < route.cost:
         route = replace(walked, planner=route.planner, info={"control": walked.points})
     info = {
@@ -200,18 +210,23 @@ def refine(
     threat: float = 0.0,
     max_turn: float = MAX_TURN,
     max_pitch: float = MAX_PITCH,
-    min_clearance: float = 0.0,
+    max_length: float | None = None,
+    min_clearance: float | None = None,
     min_height: float | None = None,
-    max_height: float = np.inf,
+    max_height: float | None = None,
+    drift: bool | None = None,
 ) -> Route:
     """A better curve near a route: control points of a B-spline, two voxels apart, moved one by one while it gains.
 
-    Not bound to the grid, it usually costs less than the exact optimum there.
+    Not bound to the grid, it usually costs less than the exact optimum there. It keeps what the route promised.
 
     Parameters
     ----------
-    risk_map, risk, length, threat, max_turn, max_pitch, min_clearance, min_height, max_height
+    risk_map, risk, length, threat, max_turn, max_pitch
         As for `waypoint_swarm`.
+    max_length, min_clearance, min_height, max_height, drift : optional
+        As well; by default what the route promised, the least height at least the map's. `max_length=numpy.inf` lets
+        it grow.
     route : Route
         From the centre of a voxel to that of another; of a planner.
     rng : numpy.random.Generator or int
@@ -236,21 +251,27 @@ def refine(
     if not route.reached or len(route.points) < 2:
         raise ValueError(f"route must lead from a start to a goal, it doesn't: {route.reason or 'no leg'}")
     checks.whole("budget", budget, least=4)
-    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
-    price = price_per_cell(risk_map, risk, length, threat, drift=False)
+    kept = promises_of(route, min_clearance=min_clearance, min_height=min_height, max_height=max_height)
+    if min_height is None:
+        kept["min_height"] = max(kept["min_height"], risk_map.min_height)
+    limits = checked_limits(
+        risk_map, max_turn, max_pitch, kept["min_clearance"], kept["min_height"], kept["max_height"]
+    )
+    longest = route.max_length if max_length is None else checked_length(max_length)
+    weights = Weights(risk, length, threat, RISK_AHEAD in route.priced if drift is None else drift)
+    price = price_per_cell(risk_map, *weights)
     ends = flyable_endpoints(risk_map, route.points[0], route.points[-1], limits)
-    task = task_of(risk_map, ends, price, limits, True)
+    task = task_of(risk_map, ends, price, weights, limits, True, longest)
     measure, route = Measure(task), route.en_route
     count = max(int(route.length / risk_map.city.cell / SPACING), 2) + 1
     one_by_one(measure, near(task, route, risk_map, count - 2), PER_SEGMENT // 2, budget, rng)
     better = route_of(measure, risk_map, f"{route.planner} + refined")
-    kept = keeps_its_place(task, route, risk_map)
-    cost = route.integral(risk_map.city, task.sky.price) / risk_map.city.cell if kept else np.inf
+    cost = cost_of(task, route, risk_map)
     info = {"evaluations": budget, "history": np.minimum(measure.history, cost), "elapsed": time.perf_counter() - began}
-    if better.cost < cost or not kept:
+    if better.cost < cost or cost == np.inf:
         route, cost = better, better.cost
     route = replace(route, cost=cost, info={**route.info, **info})
-    return with_vertical_legs(route, risk_map.city, ends, price)
+    return finished(route, ends, price, weights.priced, longest)
 
 
 class Space(NamedTuple):
@@ -352,10 +373,11 @@ def near(task: Task, route: Route, risk_map: RiskMap, waypoints: int) -> np.ndar
     return control
 
 
-def keeps_its_place(task: Task, route: Route, risk_map: RiskMap) -> bool:
-    """Whether a route is nowhere where it may not be, all along."""
+def cost_of(task: Task, route: Route, risk_map: RiskMap) -> float:
+    """What a route costs; infinite if it is somewhere where it may not be, or too long."""
     points = (route.points - risk_map.city.origin) / risk_map.city.cell
-    return not costs_of(task.sky, points[None])[1].any()
+    cost, shut, _, longer = (float(values[0]) for values in costs_of(task.sky, points[None]))
+    return np.inf if shut > 0 or longer > 0 else cost
 
 
 def one_by_one(

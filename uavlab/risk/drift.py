@@ -4,13 +4,16 @@ The papers let it fall straight down. On a map of 5 m voxels it then lands seven
 was counted. Here the ballistic fall is followed voxel by voxel until it meets the ground or a building.
 """
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
+from uavlab.checks import frozen
 from uavlab.compiled import compiled
-from uavlab.risk.fall import AIR_DENSITY, impact_energy, lethal_area, wreck_path
-from uavlab.risk.rates import FAILURE_RATE, impact_fatality, vehicle_rate
+from uavlab.risk.fall import AIR_DENSITY, fall_motion, impact_energy, lethal_area
+from uavlab.risk.rates import EVEN_ODDS_ENERGY, FAILURE_RATE, LEAST_FATAL_ENERGY, vehicle_rate
 
 if TYPE_CHECKING:
     from uavlab.risk.model import RiskMap
@@ -18,57 +21,119 @@ if TYPE_CHECKING:
 STEPS_PER_CELL = 4
 """How finely a fall is followed."""
 
+PITCH_STEP = 0.5
+"""Falls are known for climbs and descents so far apart, and that of the nearest is taken [°]."""
 
-class Wreckage(NamedTuple):
-    """A fall in one direction, step by step."""
-
-    offset: np.ndarray  # (S, 3) from the place of failure [cells]
-    hits: np.ndarray  # (S,) failures per hour × lethal area [m²/h] if it lands at this step
-    energy: np.ndarray  # (S,) E [J] if it lands at this step
+MOMENTS = 4000
+"""In which falls are sampled, before they are cut into steps."""
 
 
-def wreckage(risk_map: "RiskMap", direction: np.ndarray) -> Wreckage:
-    """The fall of the map's UAV that fails at cruise speed in a direction (3,), from as high as the map is."""
+class Falls(NamedTuple):
+    """Where a map's UAV falls to that fails at cruise speed, in any direction of flight, for compiled code.
+
+    R rows by pitch, from straight down to straight up; S steps, of which a row uses the first `last` + 1.
+    """
+
+    ahead: np.ndarray  # (R, S) way over ground from the place of failure [cells]
+    up: np.ndarray  # (R, S) [cells]
+    hits: np.ndarray  # (R, S) failures per hour × lethal area [m²/h] if it lands at this step
+    energy: np.ndarray  # (R, S) E [J] if it lands at this step
+    last: np.ndarray  # (R,)
+    occupied: np.ndarray  # (nx, ny, nz)
+    people: np.ndarray  # (nx, ny) [1/m²]
+    shelter: np.ndarray  # (nx, ny)
+    cars: np.ndarray  # (nx, ny) deaths in cars [1/h]
+
+
+def falls_of(risk_map: "RiskMap") -> Falls:
+    """All falls on a map, from as high as the map is."""
     city, uav = risk_map.city, risk_map.uav
-    level = float(np.hypot(direction[0], direction[1]))
-    heading = np.asarray(direction[:2]) / level if level > 0 else np.zeros(2)
+    pitch = np.radians(np.arange(-90.0, 90.0 + PITCH_STEP / 2, PITCH_STEP))
     depth = city.cell * city.shape[2]
-    path = wreck_path(uav, None, float(np.arctan2(direction[2], level)), depth, AIR_DENSITY)
-    fine = path.sol(np.linspace(0.0, path.t[-1], 4000))
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(fine[:2])))])
-    steps = np.linspace(0.0, way[-1], 1 + int(np.ceil(way[-1] / city.cell * STEPS_PER_CELL)))
-    distance, drop, forward, down = (np.interp(steps, way, values) for values in fine)
-    offset = np.column_stack([distance * heading[0], distance * heading[1], -drop]) / city.cell
+    motion, enough = fall_motion(uav, None, depth, AIR_DENSITY)
+    begin = np.zeros((4, len(pitch)))
+    begin[2:] = uav.cruise_speed * np.array([np.cos(pitch), -np.sin(pitch)])
+
+    def all_down(_: float, state: np.ndarray) -> float:
+        return float(state.reshape(4, -1)[1].min()) - depth - 1e-3
+
+    all_down.terminal = True  # type: ignore[attr-defined]
+    path = solve_ivp(motion, (0.0, enough), begin.ravel(), events=all_down, dense_output=True, rtol=1e-9, atol=1e-9)
+    fine = path.sol(np.linspace(0.0, path.t[-1], MOMENTS)).reshape(4, len(pitch), MOMENTS)
+    rows = [fall_steps(fall, depth, city.cell) for fall in fine.transpose(1, 0, 2)]
+    last = np.array([row.shape[1] - 1 for row in rows])
+    steps = np.zeros((4, len(rows), last.max() + 1))
+    for number, row in enumerate(rows):
+        steps[:, number, : last[number] + 1] = row
+    distance, drop, forward, down = steps
     area = lethal_area(np.maximum(drop, 0.0), np.abs(forward), np.maximum(down, 1e-9), uav.diameter / 2)
     energy = impact_energy(uav.mass + uav.payload, np.abs(forward), np.abs(down))
-    return Wreckage(offset, FAILURE_RATE * area, energy)
+    layers = risk_map.population_density, risk_map.shelter, vehicle_rate(risk_map.vehicle_share)
+    return Falls(
+        *map(frozen, (distance / city.cell, -drop / city.cell, FAILURE_RATE * area, energy)),
+        frozen(last, int), city.occupied, *(frozen(np.ascontiguousarray(layer)) for layer in layers),
+    )  # fmt: skip
+
+
+NO_FALLS = Falls(
+    *(frozen(np.empty((0, 0))) for _ in range(4)), frozen(np.empty(0), int),
+    frozen(np.empty((0, 0, 0)), bool), *(frozen(np.empty((0, 0))) for _ in range(3)),
+)  # fmt: skip
+"""For who doesn't look at them."""
+
+
+def fall_steps(fall: np.ndarray, depth: float, cell: float) -> np.ndarray:
+    """A fall (4, N) at even steps of its way down to a depth (4, S): distance, drop, and their rates."""
+    ground = int(np.argmax(fall[1] >= depth)) + 1  # the first moment below, too: it may land in between
+    fall = fall[:, :ground] if ground > 1 else fall
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(fall[:2])))])
+    steps = np.linspace(0.0, way[-1], 1 + int(np.ceil(way[-1] / cell * STEPS_PER_CELL)))
+    return np.array([np.interp(steps, way, values) for values in fall])
 
 
 def landing_rate(risk_map: "RiskMap", index: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Deaths per hour of flight [1/h] if the UAV flies in a direction (3,) through the centres of voxels (M, 3)."""
-    fall = wreckage(risk_map, direction)
-    i, j, step = landings(risk_map.city.occupied, fall.offset, np.ascontiguousarray(index)).T
-    deadly = fall.hits[step] * impact_fatality(fall.energy[step], risk_map.shelter[i, j])
-    return risk_map.population_density[i, j] * deadly + vehicle_rate(risk_map.vehicle_share)[i, j]
+    return landing_rates(risk_map.falls, np.asarray(direction, dtype=float), np.ascontiguousarray(index))
 
 
 @compiled
-def landings(occupied, offset, index):
-    """For each voxel the column (i, j) and the step at which the wreck meets the ground, a roof or a wall.
-
-    Beyond the border the layers are taken to go on as they are at it: the column is the nearest one on the map.
-    """
-    nx, ny, nz = occupied.shape
-    landed = np.empty((len(index), 3), np.int64)
+def landing_rates(falls, direction, index):
+    rates = np.empty(len(index))
     for n in range(len(index)):
-        step = 0
-        while True:
-            i = int(np.floor(index[n, 0] + 0.5 + offset[step, 0]))
-            j = int(np.floor(index[n, 1] + 0.5 + offset[step, 1]))
-            k = int(np.floor(index[n, 2] + 0.5 + offset[step, 2]))
-            inside = 0 <= i < nx and 0 <= j < ny and k < nz
-            if k < 0 or step == len(offset) - 1 or (inside and occupied[i, j, k]):
-                break
-            step += 1
-        landed[n] = min(max(i, 0), nx - 1), min(max(j, 0), ny - 1), step
-    return landed
+        rates[n] = rate_ahead(falls, direction[0], direction[1], direction[2], index[n, 0], index[n, 1], index[n, 2])
+    return rates
+
+
+@compiled
+def rate_ahead(falls, dx, dy, dz, i, j, k):
+    """Deaths per hour of flight in a direction through the centre of a voxel.
+
+    The wreck meets the ground, a roof or a wall. Beyond the border the layers are taken to go on as they are at it:
+    the column is the nearest one on the map.
+    """
+    level = math.hypot(dx, dy)
+    east, north = (dx / level, dy / level) if level > 0.0 else (0.0, 0.0)
+    row = math.floor(0.5 + (math.degrees(math.atan2(dz, level)) + 90.0) / PITCH_STEP)
+    nx, ny, nz = falls.occupied.shape
+    step = 0
+    while True:
+        a = math.floor(i + 0.5 + falls.ahead[row, step] * east)
+        b = math.floor(j + 0.5 + falls.ahead[row, step] * north)
+        c = math.floor(k + 0.5 + falls.up[row, step])
+        inside = 0 <= a < nx and 0 <= b < ny and c < nz
+        if c < 0 or step == falls.last[row] or (inside and falls.occupied[a, b, c]):
+            break
+        step += 1
+    a, b = min(max(a, 0), nx - 1), min(max(b, 0), ny - 1)
+    killed = fatality(falls.energy[row, step], falls.shelter[a, b])
+    return falls.people[a, b] * falls.hits[row, step] * killed + falls.cars[a, b]
+
+
+@compiled
+def fatality(energy, shelter):
+    """`impact_fatality` of one person."""
+    over = math.log(energy / LEAST_FATAL_ENERGY) if energy > 0.0 else -math.inf
+    odds = 0.5 * math.log(EVEN_ODDS_ENERGY / LEAST_FATAL_ENERGY)
+    if over != 0.0:
+        odds -= over / (4 * shelter) if shelter > 0.0 else math.copysign(math.inf, over)
+    return 1 / (1 + math.exp(min(odds, 700.0)))

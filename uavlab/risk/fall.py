@@ -133,13 +133,7 @@ def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_de
     speed = uav.cruise_speed if speed is None else speed
     checks.not_negative_number("speed", speed)
     checks.within("pitch", pitch, -np.pi / 2, np.pi / 2, "rad (from degrees: numpy.radians)")
-    fastest = terminal_speed(uav, air_density=air_density)
-    drag = GRAVITY / fastest**2
-
-    def motion(_: float, state: np.ndarray) -> list[float]:
-        forward, down = state[2:]
-        against = drag * np.hypot(forward, down)
-        return [forward, down, -against * forward, GRAVITY - against * down]
+    motion, enough = fall_motion(uav, speed, depth, air_density)
 
     def landing(_: float, state: np.ndarray) -> float:
         return state[1] - depth - 1e-3
@@ -149,8 +143,21 @@ def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_de
 
     landing.terminal, landing.direction, apex.direction = True, 1, 1  # type: ignore[attr-defined]
     begin = [0.0, 0.0, speed * np.cos(pitch), -speed * np.sin(pitch)]
-    enough = 10 * (1 + (speed + depth) / GRAVITY) + 2 * depth / fastest  # seconds; it is down by then
     return solve_ivp(motion, (0.0, enough), begin, events=(landing, apex), dense_output=True, rtol=1e-9, atol=1e-9)
+
+
+def fall_motion(uav: UAV, speed: float | None, depth: float, air_density: float) -> tuple[Any, float]:
+    """The equation of N falls, states (4·N,) of distances, drops and their rates; and seconds until all are down."""
+    speed = uav.cruise_speed if speed is None else speed
+    fastest = terminal_speed(uav, air_density=air_density)
+    drag = GRAVITY / fastest**2
+
+    def motion(_: float, state: np.ndarray) -> np.ndarray:
+        forward, down = state.reshape(4, -1)[2:]
+        against = drag * np.hypot(forward, down)
+        return np.concatenate([forward, down, -against * forward, GRAVITY - against * down])
+
+    return motion, 10 * (1 + (speed + depth) / GRAVITY) + 2 * depth / fastest
 
 
 def impact_energy(mass: float, forward_speed: npt.ArrayLike, fall_speed: npt.ArrayLike) -> np.ndarray:

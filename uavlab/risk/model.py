@@ -10,7 +10,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.model import locked
-from uavlab.risk.drift import landing_rate
+from uavlab.risk.drift import Falls, falls_of, landing_rate
 from uavlab.risk.rates import check_density, person_rate, vehicle_rate
 from uavlab.risk.threat import building_threat
 from uavlab.route import Route
@@ -110,6 +110,11 @@ class RiskMap:
         moves = np.argwhere(np.ones((3, 3, 3), dtype=bool)) - 1
         moves = moves[(moves != 0).any(axis=1)]
         return np.stack([landing_rate(self, index, move).reshape(self.city.shape) for move in moves])
+
+    @cached_property
+    def falls(self) -> Falls:
+        """Falls in any direction of flight, for compiled code."""
+        return falls_of(self)
 
     def integral(self, route: Route, *, drift: bool = False) -> float:
         """∫ r ds / dx, the cost that planners minimise [1/h]: by exact voxel traversal, diagonals at their length.

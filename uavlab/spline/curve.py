@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.route import Route
+from uavlab.route import Route, check_promises, promises_of
 from uavlab.spline.basis import BASIS, FACTORS, POWERS, checked_count, checked_derivative, with_ends
 from uavlab.vehicle import GRAVITY
 
@@ -111,6 +111,8 @@ class Curve:
         What `smooth` noted.
     takeoff, landing : int
         How many of its first and last segments are vertical take-off and landing, between which and the rest it hovers.
+    min_clearance, min_height, max_height, safe_height : float
+        What it promises in between [m], see `Route`.
 
     Raises
     ------
@@ -125,8 +127,13 @@ class Curve:
     info: dict[str, Any] = field(default_factory=dict)
     takeoff: int = 0
     landing: int = 0
+    min_clearance: float = 0.0
+    min_height: float = 0.0
+    max_height: float = np.inf
+    safe_height: float = 0.0
 
     def __post_init__(self) -> None:
+        check_promises(self)
         control = checks.numbers("control", self.control).copy()
         checked_count(control, checks.one_of("ends", self.ends, ("phantom", "clamped")))
         if control.ndim != 2 or control.shape[1] != 3:
@@ -280,4 +287,5 @@ class Curve:
 
     def route(self, step: float | None = None) -> Route:
         """The curve as straight lines of at most `step` metres, by default its own; longer ones draw faster."""
-        return Route((self if step is None else replace(self, step=step)).points, self.planner)
+        points = (self if step is None else replace(self, step=step)).points
+        return Route(points, self.planner, **promises_of(self))

@@ -12,6 +12,8 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.bounds import slack_of
+from uavlab.route import promises_of
 from uavlab.spline.curve import BANK, CONTACT, Curve, checked_bank, curvature
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import wind_drag
@@ -126,9 +128,9 @@ def feasibility(
     max_pitch: float = MAX_PITCH,
     max_turn: float | None = None,
     min_clearance: float | None = None,
-    min_height: float = 0.0,
-    max_height: float = np.inf,
-    safe_height: float = 0.0,
+    min_height: float | None = None,
+    max_height: float | None = None,
+    safe_height: float | None = None,
     as_printed: bool = False,
     reading: str = "plan",
 ) -> Feasibility:
@@ -153,11 +155,12 @@ def feasibility(
         Greatest change of heading over a voxel's length [rad], above 0, at most π (PSO-BAS Eq. 9); by default none, as
         the curvature's limit knows the speed; with `as_printed` π/3, RISK-ACO's.
     min_clearance : float, optional
-        Least distance to obstacles [m]; by default half the body, less the 2 % of contact that `smooth` allows.
-    min_height, max_height : float
-        Least and greatest height above ground [m].
-    safe_height : float
-        H_safe, least height above roofs and ground below [m] (PSO-BAS Eq. 11).
+        Least distance to obstacles [m]; by default what the curve promises, at least half the body, less the 2 % of
+        contact that `smooth` allows.
+    min_height, max_height : float, optional
+        Least and greatest height above ground [m]; by default what the curve promises.
+    safe_height : float, optional
+        H_safe, least height above roofs and ground below [m] (PSO-BAS Eq. 11); by default what the curve promises.
     as_printed : bool
         RISK-ACO's and PSO-BAS's own check: curvature below 1 per voxel, heading and pitch within their limits. It
         knows neither the speed nor the city.
@@ -198,13 +201,15 @@ def feasibility(
     sharpest = GRAVITY * np.tan(checked_bank(bank)) / speed**2
     thrust, tilt = tilted_thrust(curve, uav, speed, wind)
     air_speed = np.linalg.norm(speed * curve.tangent - checks.three("wind", wind), axis=1)
-    body = (1 - CONTACT) * uav.diameter / 2 if min_clearance is None else min_clearance
-    checks.not_negative_number("min_clearance", body)
+    promised = max((1 - CONTACT) * uav.diameter / 2, curve.min_clearance - slack_of(city) * city.cell)
+    least = promised if min_clearance is None else min_clearance
+    checks.not_negative_number("min_clearance", least)
+    heights = promises_of(curve, min_height=min_height, max_height=max_height, safe_height=safe_height)
     return feasibility_after(
         begins,
         (
-            lower(curve, "clearance", "m", body, curve.least_distances(city)),
-            *limits_of_place(curve, city, min_height, max_height, safe_height),
+            lower(curve, "clearance", "m", least, curve.least_distances(city)),
+            *limits_of_place(curve, city, heights["min_height"], heights["max_height"], heights["safe_height"]),
             upper(curve, "curvature", "1/m", sharpest, curve.level_curvature),
             *turned,
             steepest,

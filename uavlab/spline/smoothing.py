@@ -7,7 +7,7 @@ import numpy as np
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.bounds import Bounds, bounds_of, legs_keep
-from uavlab.route import Route
+from uavlab.route import Route, promises_of
 from uavlab.spline.curve import CONTACT, Curve
 from uavlab.vehicle import UAV
 
@@ -20,9 +20,10 @@ def smooth(
     city: City,
     uav: UAV,
     *,
-    min_clearance: float = 0.0,
-    min_height: float = 0.0,
-    max_height: float = np.inf,
+    min_clearance: float | None = None,
+    min_height: float | None = None,
+    max_height: float | None = None,
+    safe_height: float | None = None,
 ) -> Curve:
     """A cubic B-spline with the waypoints as control points, repaired until it keeps what the route keeps.
 
@@ -40,14 +41,17 @@ def smooth(
     city : City
     uav : UAV
         Its body is a ball of its diameter.
-    min_clearance : float
-        Least distance to obstacles [m], all along but for take-off and landing, which need room only for the body.
-    min_height, max_height : float
-        Least and greatest height above ground [m] between take-off and landing, all along.
+    min_clearance : float, optional
+        Least distance to obstacles [m], all along but for take-off and landing, which need room only for the body; by
+        default the route's.
+    min_height, max_height, safe_height : float, optional
+        Least and greatest height above ground [m] between take-off and landing, all along, and least height above
+        roofs; by default the route's.
 
     Returns
     -------
     Curve
+        It promises the same.
         `info["rounds"]` of repair, points `info["inserted"]` and `info["repeated"]` by it.
 
     Raises
@@ -58,7 +62,10 @@ def smooth(
     checks.instance("route", route, Route)
     checks.instance("city", city, City)
     checks.instance("uav", uav, UAV)
-    bounds = bounds_of(city, min_clearance, min_height, max_height)
+    promises = promises_of(
+        route, min_clearance=min_clearance, min_height=min_height, max_height=max_height, safe_height=safe_height
+    )
+    bounds = bounds_of(city, **promises)
     refuse_route(route, city, uav, bounds)
     bounds = bounds._replace(keep=max(bounds.keep, (1 - CONTACT) * uav.diameter / 2 / city.cell))
     before, after = route.points[: route.takeoff], route.points[len(route.points) - route.landing :]
@@ -75,6 +82,7 @@ def smooth(
                 control=np.concatenate([before, control, after]),
                 takeoff=len(before) + 1 if len(before) else 0,
                 landing=len(after) + 1 if len(after) else 0,
+                **promises,
             )
         count = len(control)
         if rounds < MIDPOINT_ROUNDS:
