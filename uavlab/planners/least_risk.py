@@ -71,8 +71,8 @@ def least_risk(
     """The route of least cost among all over 26 neighbours that keep the limits.
 
     cost = w_r·∫ r ds/dx + w_l·L + w_s·∫ threat ds/dx with the weights `risk` [h], `length` [1/m] and `threat` [1/m].
-    Of routes that cost the same, the one is taken that the search finds first, and its order is fixed; where a cell
-    costs nothing, a short one.
+    Of routes that cost the same, the one is taken that the search finds first, and its order is fixed; where cells
+    cost nothing, the shortest.
 
     Parameters
     ----------
@@ -122,6 +122,9 @@ def least_risk(
     query = query_of(risk_map, price, ends.source, ends.target, limits)
     if allowed == np.inf:
         nodes, cost, expanded = solve(query, heuristic == "backward")
+        if costs_nothing(query, nodes):
+            nodes, more = shortest_of_cheapest(query, cost)
+            expanded += more
     else:
         longest = allowed / risk_map.city.cell * (1 + rounding_of(risk_map.city))  # of each move
         routes, expanded = constrained(query, city_lengths(query), np.array([longest]))
@@ -209,7 +212,9 @@ def pareto_front(
     if count is None:
         asked = checks.numbers("lengths", lengths).ravel() / city.cell
     else:
-        safest, _, _ = solve(query, True)
+        safest, cost, _ = solve(query, True)
+        if costs_nothing(query, safest):
+            safest, _ = shortest_of_cheapest(query, cost)
         longest = np.linalg.norm(np.diff(city.index_of(safest), axis=0), axis=1).sum()
         asked = np.linspace(least, longest, count)
     routes, expanded = constrained(query, by_length, np.unique(asked))
@@ -408,12 +413,29 @@ def solve(query: Query, backward: bool) -> tuple[np.ndarray, float, int]:
     return trace(query, parent, last), float(g[last]), expanded + more
 
 
+def costs_nothing(query: Query, nodes: np.ndarray) -> bool:
+    """Whether a route passes nodes that cost no more than the least there is, `LEAST_PRICE`."""
+    return bool((query.price[:, nodes] <= 1.001 * LEAST_PRICE * query.price.max()).any())
+
+
+def shortest_of_cheapest(query: Query, cost: float) -> tuple[np.ndarray, int]:
+    """Nodes of the shortest of all routes of this least cost, to rounding, and how many expansions it took.
+
+    Where nobody is at risk the lengths of ways would drown in the sum of costs.
+    """
+    routes, expanded = constrained(city_lengths(query), query, np.array([cost]))
+    return routes[0][0], expanded
+
+
 def constrained(query: Query, by_length: Query, limits: np.ndarray) -> tuple[list[tuple[np.ndarray, float]], int]:
-    """For each greatest length [cells] the nodes and the cost of the cheapest route, shortest first, each once."""
+    """For each greatest length [cells] the nodes and the cost of the cheapest route, shortest first, each once.
+
+    `by_length` is what is limited; anything that adds up may be.
+    """
     count = query.blocked.size
     rest, expanded = rest_of_cost(query, NOWHERE, open_list(count))
     rest_length, more = rest_of_cost(by_length, NOWHERE, open_list(count))
-    states, before, cost, found = search_labels(query, rest, rest_length, limits)
+    states, before, cost, found = search_labels(query, by_length, rest, rest_length, limits)
     routes = []
     for label in found[::-1]:
         nodes = []
@@ -514,7 +536,7 @@ def trace(query: Query, parent: np.ndarray, last: int) -> np.ndarray:
 
 
 @compiled
-def search_labels(query, rest, rest_length, limits):
+def search_labels(query, by_length, rest, rest_length, limits):
     """Cheapest routes not longer than each of the limits [cells], by labels: ways to a state, cheaper or shorter.
 
     Labels are expanded in order of cost + rest. Of two at one state the later one costs more, so it is worth
@@ -548,7 +570,7 @@ def search_labels(query, rest, rest_length, limits):
                 continue
             neighbour = node + steps[move]
             follower = state_after(heading, move, neighbour)
-            way = length + LENGTHS[move]
+            way = length + edge(by_length, move, node, neighbour)
             if way + rest_length[neighbour] > limit or way >= shortest[follower] * ROUNDING:
                 continue
             cost = costs[label] + edge(query, move, node, neighbour)

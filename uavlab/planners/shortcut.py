@@ -1,7 +1,9 @@
 """Any-angle shortcuts: leave out the waypoints that a straight line makes needless.
 
 A route over 26 neighbours zigzags. Among all ways to skip waypoints, dynamic programming finds the cheapest: best[j] is
-the least over i < j of best[i] plus the straight line from i to j, if it keeps its distance to obstacles all along.
+the least over i < j of best[i] plus the straight line from i to j, if it keeps its distance to obstacles all along. To
+integrate a price along all those lines takes time with the cube of the waypoints; so with a price a line skips at most
+`LOOKBACK` of them, and what is left is gone over again, until nothing is skipped any more.
 A line that touches the edge or the corner of an obstacle is blocked, the same rule as for the moves on the grid.
 """
 
@@ -13,12 +15,16 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.city.bounds import bounds_of, keeps
+from uavlab.city.bounds import Bounds, bounds_of, keeps
 from uavlab.city.segments import ROUNDING, distance_to_box
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
 from uavlab.planners.question import checked_price
 from uavlab.route import Route, promises_of
+
+
+LOOKBACK = 128
+"""With a price, so many waypoints before one are looked at."""
 
 
 def shortcut(
@@ -32,6 +38,8 @@ def shortcut(
     safe_height: float | None = None,
 ) -> Route:
     """The cheapest route over a subset of the waypoints; it keeps what the route promised, and is no longer.
+
+    With a price and more than 128 waypoints it is the cheapest of those found in several rounds, see `LOOKBACK`.
 
     Parameters
     ----------
@@ -77,25 +85,45 @@ def shortcut(
     points = (free.points - city.origin) / city.cell
     same = ROUNDING if prices is None else ROUNDING * float(prices.max())
     bounds = bounds_of(city, **promises)
-    best, before = cheapest_subset(points, bounds, prices, cheapest, same)
-    if not np.isfinite(best).all():
-        leg = int(np.flatnonzero(~np.isfinite(best))[0])
+    lookback = len(points) if prices is None else LOOKBACK
+    kept, cost, leg = rounds(points, bounds, prices, cheapest, same, lookback)
+    if leg:
         ends = f"{leg - 1} {checks.show(free.points[leg - 1])} and {leg} {checks.show(free.points[leg])}"
         raise ValueError(
             f"route comes too near to an obstacle or a zone, too low or too high, between waypoints {ends}: "
             f"shorten only routes that themselves keep {told(promises)} all along"
         )
-    kept = [len(points) - 1]
-    while kept[-1] != 0:
-        kept.append(int(before[kept[-1]]))
     before_and_after = route.points[: route.takeoff], route.points[len(route.points) - route.landing :]
-    points = np.concatenate([before_and_after[0], free.points[kept[::-1]], before_and_after[1]])
+    points = np.concatenate([before_and_after[0], free.points[kept], before_and_after[1]])
     vertical = replace(route, points=points[: route.takeoff + 1]), replace(route, points=points[-route.landing - 1 :])
-    cost = float(best[-1]) * city.cell
+    cost *= city.cell
     for part in vertical:
         cost += part.length if prices is None else part.integral(city, prices)
     priced = "" if prices is None else route.priced or "price"
     return replace(route, points=points, planner=f"{route.planner} + shortcut", cost=cost, priced=priced, **promises)
+
+
+def rounds(
+    points: np.ndarray,
+    bounds: Bounds,
+    prices: np.ndarray | None,
+    cheapest: float,
+    same: float,
+    lookback: int,
+) -> tuple[np.ndarray, float, int]:
+    """The waypoints to keep (K,), what the way over them costs, and the end of the first leg that isn't free, or 0."""
+    kept = np.arange(len(points))
+    while True:
+        best, before = cheapest_subset(points[kept], bounds, prices, cheapest, same, lookback)
+        if not np.isfinite(best).all():
+            return kept, np.inf, int(np.flatnonzero(~np.isfinite(best))[0])
+        chosen = [len(kept) - 1]
+        while chosen[-1] != 0:
+            chosen.append(int(before[chosen[-1]]))
+        done = len(kept) <= lookback or len(chosen) == len(kept)
+        kept = kept[chosen[::-1]]
+        if done:
+            return kept, float(best[-1]), 0
 
 
 def told(promises: dict[str, float]) -> str:
@@ -104,8 +132,8 @@ def told(promises: dict[str, float]) -> str:
 
 
 @compiled
-def cheapest_subset(points, bounds, price, least_price, same):
-    """Least cost from the first to each waypoint, and the waypoint before it on the way.
+def cheapest_subset(points, bounds, price, least_price, same, lookback):
+    """Least cost from the first to each waypoint, and the waypoint before it on the way, at most `lookback` before.
 
     Costs that differ by less than `same` are the same; of those, the way that skips most wins. What was in the way of
     a leg from a waypoint is probably in the way of the next one from there, too, so that is looked at first.
@@ -117,7 +145,7 @@ def cheapest_subset(points, bounds, price, least_price, same):
     for j in range(1, len(points)):
         free, _ = keeps(bounds, points[j - 1], points[j], 0.0, 0.0)
         most = best[j - 1] + line_price(price, least_price, points[j - 1], points[j], np.inf) + same if free else np.inf
-        for i in range(j):
+        for i in range(max(j - lookback, 0), j):
             limit = min(best[j] - same, most) - best[i]
             if least_price * distance(points[i], points[j]) >= limit:
                 continue

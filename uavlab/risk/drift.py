@@ -68,16 +68,16 @@ def falls_of(risk_map: "RiskMap") -> Falls:
     distance, drop, forward, down = steps
     area = lethal_area(np.maximum(drop, 0.0), np.abs(forward), np.maximum(down, 1e-9), uav.diameter / 2)
     energy = impact_energy(uav.mass + uav.payload, np.abs(forward), np.abs(down))
+    ahead, up, hits, energy = map(frozen, (distance / city.cell, -drop / city.cell, FAILURE_RATE * area, energy))
     layers = risk_map.population_density, risk_map.shelter, vehicle_rate(risk_map.vehicle_share)
-    return Falls(
-        *map(frozen, (distance / city.cell, -drop / city.cell, FAILURE_RATE * area, energy)),
-        frozen(last, int), city.occupied, *(frozen(np.ascontiguousarray(layer)) for layer in layers),
-    )  # fmt: skip
+    people, shelter, cars = (frozen(np.ascontiguousarray(layer)) for layer in layers)
+    return Falls(ahead, up, hits, energy, frozen(last, int), city.occupied, people, shelter, cars)
 
 
+NOTHING = frozen(np.empty((0, 0)))
 NO_FALLS = Falls(
-    *(frozen(np.empty((0, 0))) for _ in range(4)), frozen(np.empty(0), int),
-    frozen(np.empty((0, 0, 0)), bool), *(frozen(np.empty((0, 0))) for _ in range(3)),
+    NOTHING, NOTHING, NOTHING, NOTHING, frozen(np.empty(0), int),
+    frozen(np.empty((0, 0, 0)), bool), NOTHING, NOTHING, NOTHING,
 )  # fmt: skip
 """For who doesn't look at them."""
 
