@@ -22,7 +22,6 @@ from uavlab.compiled import compiled
 from uavlab.planners.question import checked_price
 from uavlab.route import Route, promises_of
 
-
 LOOKBACK = 128
 """With a price, so many waypoints before one are looked at."""
 
