@@ -269,3 +269,12 @@ def test_what_a_route_says_of_itself():
 def test_bad_routes_are_refused_with_the_reason(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+
+
+def test_resampled_routes_know_where_take_off_and_landing_end():
+    route = Route([(0, 0, 0), (0, 0, 4), (9, 0, 4), (9, 0, 1)], takeoff=1, landing=1)
+    fine = route.resample(1.0)
+    assert (fine.takeoff, fine.landing) == (4, 3)
+    assert fine.en_route.points[[0, -1]].tolist() == [[0, 0, 4], [9, 0, 4]]
+    level = Route([(0, 0, 4), (9, 0, 4)]).resample(2.0)
+    assert (level.takeoff, level.landing) == (0, 0)

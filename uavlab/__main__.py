@@ -249,9 +249,7 @@ def plan(
         risk_map = risk_map or assumed_risk(city)
         return by_risk(risk_map, start, goal, {"min_clearance": clearance, **heights}, options.detour), risk_map
     route = astar(city, start, goal, min_clearance=clearance, **heights)
-    if planner == "any-angle":
-        route = shortcut(route, city, min_clearance=clearance, **heights)
-    return [route], risk_map
+    return [shortcut(route, city) if planner == "any-angle" else route], risk_map
 
 
 def try_out(

@@ -223,7 +223,8 @@ class Route:
             np.linspace(start, end, n, endpoint=False)
             for start, end, n in zip(self.points[:-1], self.points[1:], parts, strict=True)
         ]
-        return replace(self, points=np.vstack([*legs, self.points[-1:]]))
+        takeoff, landing = int(parts[: self.takeoff].sum()), int(parts[len(parts) - self.landing :].sum())
+        return replace(self, points=np.vstack([*legs, self.points[-1:]]), takeoff=takeoff, landing=landing)
 
     def to_csv(self, path: str | Path) -> None:
         """Write waypoints and the distance flown to each, in metres: columns x_m, y_m, z_m, distance_m."""

@@ -20,6 +20,7 @@ from uavlab.planners import (
     repare,
     repare_price,
     shortcut,
+    theta_star,
     waypoint_swarm,
 )
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus
@@ -52,6 +53,7 @@ def everyone(city):
     seeded = {"rng": 0, "budget": 400}
     return {
         "A*": (astar(city, *ENDS, **LIMITS), LIMITS, ""),
+        "Theta*": (theta_star(city, *ENDS, **LIMITS), LIMITS, ""),
         "A*, priced": (astar(city, *ENDS, price=price, **LIMITS), LIMITS, "price"),
         "least energy": (least_energy(city, *ENDS, SLIM, **LIMITS), LIMITS, "energy"),
         "potential field": (potential_field(city, (3.5, 2.5, 6.5), (56.5, 2.5, 6.5), **heights), heights, ""),
@@ -279,6 +281,7 @@ def test_clearance_along_an_offset_is_the_least_of_the_samples(seed):
 
 SAME = {
     "astar": lambda city, *ends: astar(city, *ends),
+    "theta_star": lambda city, *ends: theta_star(city, *ends),
     "repare": lambda city, *ends: repare(city, *ends, load="dead", disturbance="none"),
     "hazard_astar": lambda city, *ends: hazard_astar(city, *ends, sigma=0.5),
     "least_energy": lambda city, *ends: least_energy(city, *ends, SLIM),

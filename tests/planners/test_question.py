@@ -20,6 +20,7 @@ from uavlab.planners import (
     refine,
     repare,
     shortcut,
+    theta_star,
     waypoint_swarm,
 )
 from uavlab.planners.question import Airspace, checked_price, end_at
@@ -138,6 +139,7 @@ ENDS = (4.5, 18.5, 14.5), (36.5, 18.5, 22.5)
 
 PLANNERS = {
     "A*": astar,
+    "Theta*": theta_star,
     "potential field": partial(potential_field, push=1.0, reach=2.0),
     "REPARE": partial(repare, disturbance="none", load="dead"),
     "hazard": partial(hazard_astar, sigma=0.3),

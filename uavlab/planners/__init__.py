@@ -10,6 +10,7 @@ from uavlab.planners.potential_field import potential_field, potential_forces, r
 from uavlab.planners.repare import flight_conditions, repare, repare_price
 from uavlab.planners.shortcut import shortcut
 from uavlab.planners.swarm import refine, waypoint_swarm
+from uavlab.planners.theta_star import theta_star
 
 __all__ = [
     "Comparison",
@@ -31,5 +32,6 @@ __all__ = [
     "repare_price",
     "repulsion",
     "shortcut",
+    "theta_star",
     "waypoint_swarm",
 ]

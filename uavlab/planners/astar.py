@@ -6,6 +6,7 @@ metre on the edges, which keeps A* exact and the cost of a route the same in bot
 """
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -142,14 +143,19 @@ def cheapest_route(
     if record:
         info["order"] = order[:expanded]
     if parent[last] == UNSEEN:
-        reach = np.count_nonzero(parent)
-        start, goal = city.center_of(city.index_of([source, target]))
-        ends = f"from {checks.show(start)} to {checks.show(goal)}"
-        reason = f"no free way {ends}: all {reach} voxels within reach were searched"
-        return Route(np.empty((0, 3)), "A*", reached=False, reason=reason, cost=np.inf, info=info)
+        return replace(no_way(city, source, target, int(np.count_nonzero(parent))), info=info)
     nodes = trace(parent, first, last, city.shape)
     cost = float(g[last]) * city.cell
     return Route(city.center_of(city.index_of(nodes[::-1] if backwards else nodes)), "A*", cost=cost, info=info)
+
+
+def no_way(city: City, source: int, target: int, reach: int) -> Route:
+    """A route that doesn't arrive, as all voxels within reach were searched."""
+    start, goal = city.center_of(city.index_of([source, target]))
+    reason = (
+        f"no free way from {checks.show(start)} to {checks.show(goal)}: all {reach} voxels within reach were searched"
+    )
+    return Route(np.empty((0, 3)), "A*", reached=False, reason=reason, cost=np.inf)
 
 
 def penalty_zone(
