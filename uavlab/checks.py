@@ -88,6 +88,13 @@ def one_of(name: str, value: str, known: Iterable[str]) -> str:
     return value
 
 
+def flag(name: str, value: object) -> bool:
+    """Refuse what isn't True or False: the text "False" would count as true."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} must be True or False, got {value!r}")
+    return bool(value)
+
+
 def vectors(**named: npt.ArrayLike) -> list[np.ndarray]:
     """The arguments as float arrays (..., D), all finite and with the same D, 2 or 3."""
     arrays = {name: numbers(name, value) for name, value in named.items()}

@@ -581,3 +581,19 @@ def test_the_cell_that_a_refusal_suggests_is_accepted_by_the_limit():
     cell = float(re.search(r"at least ([\d.]+) m", str(refusal.value))[1])
     assert np.prod(np.ceil(np.array([1000, 1000, 100]) / cell)) <= 500e6
     assert 1000 * 1000 * 100 / cell**3 == pytest.approx(500e6, rel=0.05)
+
+
+def test_node_codes_as_printed_run_from_left_to_right_back_to_front_and_top_to_bottom():
+    """RISK-ACO section 1."""
+    city = City(np.zeros((4, 3, 2), bool))
+    index = np.array([(0, 2, 1), (1, 2, 1), (3, 2, 1), (0, 1, 1), (3, 0, 1), (0, 2, 0), (3, 0, 0)])
+    assert city.code_of(index, as_printed=True).tolist() == [1, 2, 4, 5, 12, 13, 24]
+    every = np.argwhere(~city.occupied)
+    codes = city.code_of(every, as_printed=True)
+    assert sorted(codes.tolist()) == list(range(1, 25))
+    assert np.array_equal(city.index_of(codes, as_printed=True), every)
+    for wrong in (0, 25):
+        with pytest.raises(ValueError, match=rf"code must be from 1 to 24, got {wrong}"):
+            city.index_of(wrong, as_printed=True)
+    with pytest.raises(ValueError, match="as_printed must be True or False, got 'False'"):
+        city.code_of((0, 0, 0), as_printed="False")

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from uavlab.optimizers import pso_bas
+from uavlab.optimizers import bas, pso, pso_bas
 from uavlab.optimizers.beetle import DECAY, LONGER, SHORTER
 from uavlab.optimizers.pso_bas import ANTENNA
 
@@ -129,7 +129,7 @@ def test_as_printed_takes_the_place_of_the_settings_it_names():
     one = pso_bas(rastrigin, BOUNDS, 1000, 0, as_printed=True)
     other = pso_bas(
         rastrigin, BOUNDS, 1000, 0,
-        inertia=(0.1, 0.1), v_max=0.01, decay=0.5, probes=7, block=2, as_printed=True,
+        inertia=(0.1, 0.1), v_max=0.01, decay=0.5, probes=7, as_printed=True,
     )  # fmt: skip
     assert np.array_equal(one.history, other.history)
     assert not np.array_equal(one.history, pso_bas(rastrigin, BOUNDS, 1000, 0, as_printed=True, c1=1.0).history)
@@ -184,3 +184,32 @@ def test_on_one_axis_the_least_value_is_found(options):
 def test_a_wrong_choice_is_named(options, message):
     with pytest.raises(ValueError, match=re.escape(message)):
         pso_bas(sphere, BOUNDS, 60, 0, **options)
+
+
+def test_as_printed_the_beetle_has_three_dimensions_where_that_divides_all():
+    """m = 3 (Table 3); with 3 it is 12 % from the optimum on campuses where all 21 coordinates at once leave 17 %."""
+    box = np.tile((-3.0, 4.0), (6, 1))
+
+    def history(bounds, **options):
+        return pso_bas(rastrigin, bounds, 800, 0, as_printed=True, **options).history
+
+    assert np.array_equal(history(box), history(box, block=3))
+    assert not np.array_equal(history(box), history(box, block=6))
+    assert np.array_equal(history(box[:4]), history(box[:4], block=4))
+    assert not np.array_equal(history(box[:4]), history(box[:4], block=2))
+
+
+@pytest.mark.parametrize("search", [pso, bas, pso_bas])
+def test_a_search_stops_at_the_iteration_that_reaches_the_target(search):
+    whole = search(sphere, BOUNDS, 2000, 3)
+    target = float(whole.history[len(whole.history) // 3])
+    stopped = search(sphere, BOUNDS, 2000, 3, target=target)
+    made = len(stopped.history)
+    assert stopped.value <= target < whole.history[stopped.iterations[-2] - 1]
+    assert made == stopped.iterations[-1] < 2000
+    if search is bas:  # in swarms the inertia follows the budget, which is the same
+        assert np.array_equal(stopped.history, whole.history[:made])
+    assert np.array_equal(search(sphere, BOUNDS, 300, 3, target=-1.0).history, search(sphere, BOUNDS, 300, 3).history)
+    for wrong in (np.nan, np.inf, "low"):
+        with pytest.raises(ValueError, match="target must be"):
+            search(sphere, BOUNDS, 300, 3, target=wrong)

@@ -438,6 +438,25 @@ def test_ants_as_printed_nearly_all_go_the_same_way():
         assert ways[1] > 150
 
 
+def test_a_route_is_split_until_it_keeps_the_demand():
+    """RISK-ACO section 4, step 3; each split takes its share of the budget, and what isn't needed isn't spent."""
+    campus = campuses()[0]
+    every = ant_colony(campus, *CAMPUS_FLIGHT, rng=2, budget=900, splits=4)
+    assert every.info["splits"] == 4
+    costs = every.info["history"][[179, 359, 539, 719, 899]]
+    for number, cost in enumerate(costs):
+        met = ant_colony(campus, *CAMPUS_FLIGHT, rng=2, budget=900, splits=4, demand=float(cost) * (1 + 1e-12))
+        assert met.cost <= cost * (1 + 1e-12)
+        assert met.info["splits"] == int(np.argmax(costs <= cost * (1 + 1e-12)))
+        assert met.info["evaluations"] == 180 * (1 + met.info["splits"])
+        assert number >= met.info["splits"]
+    never = ant_colony(campus, *CAMPUS_FLIGHT, rng=2, budget=900, splits=4, demand=1e-12)
+    assert np.array_equal(never.points, every.points)
+    for wrong in (0.0, -1.0, np.nan):
+        with pytest.raises(ValueError, match="demand must be finite and above 0"):
+            ant_colony(campus, *CAMPUS_FLIGHT, rng=2, budget=900, splits=4, demand=wrong)
+
+
 BAD = made_of(np.zeros((8, 8, 4), bool))
 ENDS = (1.0, 1.0, 1.0), (15.0, 15.0, 7.0)
 

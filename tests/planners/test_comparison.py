@@ -14,9 +14,10 @@ from uavlab.planners import (
     compare_planners,
     least_risk,
     optimality_gap,
+    refine,
     waypoint_swarm,
 )
-from uavlab.risk import RiskMap, random_campus
+from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus
 from uavlab.route import Route
 from uavlab.statistics import over_maps, share_interval
 
@@ -318,12 +319,14 @@ def test_an_error_within_a_run_says_in_which():
     assert "rng=5" in failed.value.__notes__[0]
 
 
+RACERS = {"ants": ant_colony, "swarm": functools.partial(waypoint_swarm, arcs=50, refinement=0)}
+
+
 @pytest.fixture(scope="module")
 def raced():
     """Two planners on two campuses of 20 × 20 × 11 voxels, from and to where campuses are planned."""
-    planners = {"ants": ant_colony, "swarm": functools.partial(waypoint_swarm, optimizer="pso_bas", arcs=50)}
     maps = [random_campus(seed, cell=7.5) for seed in range(2)]
-    return compare_planners(planners, maps, seeds=range(3), budget=400, progress=False)
+    return compare_planners(RACERS, maps, seeds=range(3), budget=400, progress=False)
 
 
 def test_real_planners_walk_as_far_as_the_budget_and_their_histories_end_at_their_gaps(raced):
@@ -335,7 +338,7 @@ def test_real_planners_walk_as_far_as_the_budget_and_their_histories_end_at_thei
     assert (raced.gaps < 1).all()  # measured up to 0.14 and 0.31
     assert raced.iterations[0].tolist() == list(range(10, 401, 10))
     assert (np.diff(raced.iterations[1]) > 0).all()
-    assert raced.iterations[1][-1] == 240  # then comes refinement, 0.4 of the budget
+    assert raced.iterations[1][-1] == 400
     assert (raced.elapsed > 0).all()
 
 
@@ -348,3 +351,43 @@ def test_real_runs_are_those_of_the_planners_alone(raced):
     assert ((evaluations >= 1) & (evaluations <= 400)).all()
     assert (iterations[0] == np.ceil(evaluations[0] / 10)).all()
     assert raced.table()["failed"].tolist() == [0, 0]
+
+
+def test_all_are_refined_alike_with_a_share_of_the_budget(raced):
+    maps = [random_campus(seed, cell=7.5) for seed in range(2)]
+    refined = compare_planners(RACERS, maps, seeds=range(3), budget=400, refinement=0.4, progress=False)
+    assert refined.refinement == 0.4
+    assert raced.table().index.name == "planner, not refined"
+    assert refined.table().index.name == "planner, refined"
+    assert refined.histories.shape == raced.histories.shape
+    assert refined.histories[..., -1] == pytest.approx(refined.gaps, abs=1e-9)
+    assert (np.diff(np.where(np.isinf(refined.histories), 1e9, refined.histories), axis=-1) <= 1e-12).all()
+    walked = ant_colony(maps[0], *CAMPUS_FLIGHT, rng=2, budget=240)
+    least = refined.exact[0].cost
+    assert refined.histories[0, 0, 2, 239] == pytest.approx(walked.cost / least - 1)
+    alone = refine(maps[0], walked, rng=2, budget=160)
+    assert refined.gaps[0, 0, 2] == pytest.approx(alone.cost / least - 1)
+    assert (refined.gaps[0] < refined.histories[0, ..., 239]).mean() > 0.8
+    assert (refined.gaps[0] < -1e-9).any()  # off the grid it may be below the grid's best
+
+
+def test_some_refined_and_others_not_is_no_comparison():
+    """The finding: curves that were refined were held against ants on the grid."""
+    unequal = {"ants": ant_colony, "swarm": functools.partial(waypoint_swarm, arcs=50)}
+    with pytest.raises(ValueError, match="planners must all be refined or none: swarm refines by itself; give refinem"):
+        compare_planners(unequal, random_campus(0, cell=7.5), seeds=[0], budget=400, progress=False)
+    both = {"swarm": unequal["swarm"], "other": functools.partial(waypoint_swarm, optimizer="pso", arcs=50)}
+    raced = compare_planners(both, random_campus(0, cell=7.5), seeds=[0], budget=400, progress=False)
+    assert raced.table().index.name == "planner, refined"
+    for wrong in (-0.1, 1.0, np.nan):
+        with pytest.raises(ValueError, match="refinement must be a share of the budget"):
+            compare(PLANNERS, MAPS, seeds=[0], budget=8, refinement=wrong)
+
+
+def test_a_route_that_was_not_found_can_not_be_refined_and_counts_as_failed():
+    def fails(risk_map, start, goal, *, budget, rng):
+        return pretend(risk_map, start, goal, budget=budget, rng=1, gaps=late)
+
+    raced = compare({"late": fails}, MAPS, seeds=[1], budget=8, refinement=0.5)
+    assert np.isinf(raced.gaps).all()
+    assert raced.histories.shape[-1] == 8

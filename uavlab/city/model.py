@@ -456,8 +456,15 @@ class City:
         """Centres (..., 3) [m] of the voxels with indices (..., 3)."""
         return self.origin + self.cell * (np.asarray(index) + 0.5)
 
-    def code_of(self, index: npt.ArrayLike) -> np.ndarray:
+    def code_of(self, index: npt.ArrayLike, *, as_printed: bool = False) -> np.ndarray:
         """Node codes of voxels (..., 3): k + nz·(j + ny·i), the position in `occupied.ravel()`.
+
+        Parameters
+        ----------
+        index : (..., 3) array of int
+        as_printed : bool
+            Number them as RISK-ACO does (section 1): from left to right, from the back to the front, from the top down.
+            We take left to be west, the back north, and begin with 1: 1 + i + nx·((ny − 1 − j) + ny·(nz − 1 − k)).
 
         Raises
         ------
@@ -470,9 +477,12 @@ class City:
         if ((index < 0) | (index >= self.shape)).any():
             wrong = index[((index < 0) | (index >= self.shape)).any(axis=-1)].reshape(-1, 3)[0]
             raise ValueError(f"index {tuple(wrong.tolist())} lies outside of the map of {self.shape} voxels")
+        if checks.flag("as_printed", as_printed):
+            nx, ny, nz = self.shape
+            return 1 + index[..., 0] + nx * ((ny - 1 - index[..., 1]) + ny * (nz - 1 - index[..., 2]))
         return np.ravel_multi_index(tuple(np.moveaxis(index, -1, 0)), self.shape)
 
-    def index_of(self, code: npt.ArrayLike) -> np.ndarray:
+    def index_of(self, code: npt.ArrayLike, *, as_printed: bool = False) -> np.ndarray:
         """Indices (..., 3) of the voxels with these node codes; the inverse of `code_of`.
 
         Raises
@@ -480,10 +490,17 @@ class City:
         ValueError
             If a code is not between 0 and the number of voxels.
         """
+        first = 1 if checks.flag("as_printed", as_printed) else 0
         code = np.asarray(code)
-        if ((code < 0) | (code >= self.occupied.size)).any():
-            wrong = code[(code < 0) | (code >= self.occupied.size)].flat[0]
-            raise ValueError(f"code must be from 0 to {self.occupied.size - 1}, got {wrong}")
+        beyond = (code < first) | (code >= self.occupied.size + first)
+        if beyond.any():
+            raise ValueError(
+                f"code must be from {first} to {self.occupied.size - 1 + first}, got {code[beyond].flat[0]}"
+            )
+        if as_printed:
+            nx, ny, nz = self.shape
+            k, j, i = np.unravel_index(code - first, (nz, ny, nx))
+            return np.stack([i, ny - 1 - j, nz - 1 - k], axis=-1)
         return np.stack(np.unravel_index(code, self.shape), axis=-1)
 
     def inside(self, points: npt.ArrayLike) -> np.ndarray:

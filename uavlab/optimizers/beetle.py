@@ -43,6 +43,7 @@ def bas(
     greedy: bool = False,
     block: int | None = None,
     start: npt.ArrayLike | None = None,
+    target: float | None = None,
     as_printed: bool = False,
 ) -> Result:
     """Minimise a function with one beetle.
@@ -51,7 +52,7 @@ def bas(
 
     Parameters
     ----------
-    f, bounds, budget, rng
+    f, bounds, budget, rng, target
         As for `pso`; the budget covers the first point and one step, 4 evaluations, or 3 if greedy.
     antenna : float
         First length of antennae and step, d0 = δ0, as a share of the range of each coordinate, above 0. d reaches from
@@ -82,12 +83,14 @@ def bas(
     if decay is None and not greedy:
         raise ValueError("decay must be a number unless greedy: a beetle that walks either way has no gain to follow")
     antennae = antennae_of(bounds, antenna, decay, block, as_printed)
-    count = Counter(f, len(antennae.low), checked_budget(budget, 3 if greedy else 4, "the first point and one step"))
+    count = Counter(
+        f, len(antennae.low), checked_budget(budget, 3 if greedy else 4, "the first point and one step"), target
+    )
     x = first_points(start, antennae.low, antennae.high, 1, rng)
     length = first_lengths(antennae, 1)
     value = count(x)
     count.end_iteration()
-    while count.left > 0:
+    while not count.over:
         if greedy:
             improve(antennae, length, count, x, value, rng)
         else:

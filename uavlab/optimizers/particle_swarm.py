@@ -43,6 +43,7 @@ def pso(
     c2: float = C2,
     v_max: float = V_MAX,
     start: npt.ArrayLike | None = None,
+    target: float | None = None,
     as_printed: bool = False,
 ) -> Result:
     """Minimise a function with a particle swarm.
@@ -67,6 +68,9 @@ def pso(
         Longest step as a share of the range of each coordinate, above 0; infinite for no limit.
     start : (M, D) array, optional
         First positions of M ≤ N particles; the others are drawn evenly within the bounds.
+    target : float, optional
+        Stop at the end of the iteration in which the best value is at most this, PSO-BAS's "accuracy standard" (4.3,
+        step 6); by default only the budget ends the search.
     as_printed : bool
         ω = 1 throughout and no limit of the step, in place of `inertia` and `v_max`.
 
@@ -84,12 +88,12 @@ def pso(
     settings = swarm_settings(inertia, c1, c2, v_max, as_printed)
     low, high = checked_bounds(bounds)
     checks.whole("swarm", swarm, least=1)
-    count = Counter(f, len(low), checked_budget(budget, swarm, "one swarm"))
+    count = Counter(f, len(low), checked_budget(budget, swarm, "one swarm"), target)
     x = first_points(start, low, high, swarm, rng)
     velocity = np.zeros_like(x)
     best, value = x.copy(), count(x)
     count.end_iteration()
-    while count.left > 0:
+    while not count.over:
         x, velocity = flown(x, velocity, best, best[value.argmin()], low, high, settings, count.made / budget, rng)
         keep_better(best, value, x, count(x))
         count.end_iteration()

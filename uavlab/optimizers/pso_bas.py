@@ -19,6 +19,10 @@ ANTENNA = 0.15
 """d0 as a share of the range: ours, for a swarm of greedy antennae."""
 
 
+PRINTED_BLOCK = 3
+"""m (PSO-BAS Table 3), which the paper doesn't explain: the beetle's dimension, that of a point in space."""
+
+
 def pso_bas(
     f: Function,
     bounds: npt.ArrayLike,
@@ -36,6 +40,7 @@ def pso_bas(
     probes: int = 3,
     block: int | None = None,
     start: npt.ArrayLike | None = None,
+    target: float | None = None,
     as_printed: bool = False,
 ) -> Result:
     """Minimise a function with a particle swarm that probes to both sides.
@@ -45,7 +50,7 @@ def pso_bas(
 
     Parameters
     ----------
-    f, bounds, budget, rng, swarm, inertia, c1, c2, v_max, start
+    f, bounds, budget, rng, swarm, inertia, c1, c2, v_max, start, target
         As for `pso`.
     antennae : {"best", "current"}
         What they probe: the particle's best, or its present position.
@@ -56,10 +61,11 @@ def pso_bas(
     probes : int
         Pairs of evaluations per particle and iteration, at least 1.
     block : int, optional
-        Probe along so many neighbouring coordinates at a time, such as the 3 of one waypoint; all by default.
+        Probe along so many neighbouring coordinates at a time, such as the 3 of one waypoint; all by default, as
+        printed 3, if they divide the coordinates: the beetle's m of PSO-BAS Table 3.
     as_printed : bool
-        ω = 1 and no limit of the step; one probe along all coordinates, in a direction from a cube; the beetle then
-        walks to the better side, better or not (Eq. 19); η = 0.95. In place of the parameters concerned.
+        ω = 1 and no limit of the step; one probe, in a direction from a cube; the beetle then walks to the better
+        side, better or not (Eq. 19); η = 0.95. In place of the parameters concerned.
 
     Returns
     -------
@@ -78,16 +84,18 @@ def pso_bas(
     checks.whole("probes", probes, least=1)
     checks.whole("swarm", swarm, least=1)
     if as_printed:
-        decay, block = DECAY, None
+        decay = DECAY
+        if block is None and len(checks.numbers("bounds", bounds)) % PRINTED_BLOCK == 0:
+            block = PRINTED_BLOCK
     feelers = antennae_of(bounds, antenna, decay, block, as_printed)
     low, high = feelers.low, feelers.high
-    count = Counter(f, len(low), checked_budget(budget, swarm, "one swarm"))
+    count = Counter(f, len(low), checked_budget(budget, swarm, "one swarm"), target)
     x = first_points(start, low, high, swarm, rng)
     velocity, length = np.zeros_like(x), first_lengths(feelers, swarm)
     now = count(x)
     best, value = x.copy(), now.copy()
     count.end_iteration()
-    while count.left > 0:
+    while not count.over:
         probed, smelled = (best, value) if antennae == "best" else (x, now)
         if as_printed:
             found = walked(feelers, length, count, probed, rng)

@@ -45,10 +45,17 @@ class Result:
 
 
 class Counter:
-    """f with a budget: it evaluates points, remembers the best, and counts NaN as worst."""
+    """f with a budget: it evaluates points, remembers the best, and counts NaN as worst.
 
-    def __init__(self, f: Function, dimensions: int, budget: int) -> None:
+    It is over when the budget is spent, or the best is at most the target.
+    """
+
+    def __init__(self, f: Function, dimensions: int, budget: int, target: float | None = None) -> None:
+        if target is not None:
+            checks.number("target", target)
+            checks.finite("target", target)
         self.f = f
+        self.target = -np.inf if target is None else float(target)
         self.left = budget
         self.best = np.full(dimensions, np.nan)
         self.value = np.inf
@@ -81,6 +88,10 @@ class Counter:
             self.value, self.best = float(given[least]), asked[least].copy()
         values[: len(asked)] = given
         return values
+
+    @property
+    def over(self) -> bool:
+        return self.left <= 0 or self.value <= self.target
 
     def end_iteration(self) -> None:
         self.iterations.append(self.made)

@@ -79,6 +79,7 @@ def ant_colony(
     pheromone: tuple[float, float, float] = (OURS.least, OURS.first, OURS.most),
     height_guided: bool = True,
     splits: int = 0,
+    demand: float | None = None,
     risk: float = 1.0,
     length: float = 0.0,
     threat: float = 0.0,
@@ -125,6 +126,9 @@ def ant_colony(
         Points at which to split the route (section 3.4), one after the other: the piece with most nodes is split at its
         middle node, and both halves are planned anew; a half stays as it was unless the new one is better. Each split
         takes an equal part of the budget.
+    demand : float, optional
+        Greatest cost that the route may have: it is split no more once it keeps this (section 4, step 3), and no more
+        ants walk; by default it is split as often as said.
     record : bool
         Keep `info["pheromone"]`.
     as_printed : bool
@@ -136,9 +140,9 @@ def ant_colony(
     Route
         `cost` as for `least_risk`; `info["evaluations"]`, how many ants walked; `info["history"]`, the least cost after
         each of them; `info["ants"]`, the cost of each one's own way (after a split: of its piece), infinite if it got
-        stuck; `info["iterations"]`, how many had walked at the end of each generation; `info["elapsed"]` [s]. With
-        `record`, `info["pheromone"]`, τ before the first generation and after each of those for the whole route,
-        (G + 1, nx, ny, nz). Where no ant arrives `reached` is False, and `reason` says why.
+        stuck; `info["iterations"]`, how many had walked at the end of each generation; `info["splits"]` made;
+        `info["elapsed"]` [s]. With `record`, `info["pheromone"]`, τ before the first generation and after each of
+        those for the whole route, (G + 1, nx, ny, nz). Where no ant arrives `reached` is False, and `reason` says why.
 
     Raises
     ------
@@ -150,6 +154,8 @@ def ant_colony(
     habits = PRINTED if as_printed else checked_habits(alpha, beta, gamma, evaporation, deposit, pheromone)
     checks.whole("ants", ants, least=1)
     checks.whole("splits", splits, least=0)
+    if demand is not None:
+        checks.positive_number("demand", demand)
     checks.whole("budget", budget, least=1)
     least = ants * (splits + 1) * (2 if splits else 1)
     if budget < least:
@@ -167,7 +173,9 @@ def ant_colony(
     found = forage(colony, ends, nothing, nothing, budget - 2 * splits * half, longest, record)
     pieces, searches, total = [found.nodes], [found], found.cost
     history = [np.minimum.accumulate(found.costs)]
-    for _ in range(splits):
+    made = 0
+    while made < splits and not (demand is not None and total <= demand):
+        made += 1
         most = max(range(len(pieces)), key=lambda piece: len(pieces[piece]))
         if len(pieces[most]) < 3:  # no route yet, or none that can be split: one more search for the whole
             found = forage(colony, ends, nothing, nothing, 2 * half, longest)
@@ -192,6 +200,7 @@ def ant_colony(
         "history": np.concatenate(history),
         "ants": walked,
         "iterations": np.cumsum(np.concatenate([search.walkers for search in searches])),
+        "splits": made,
         "elapsed": time.perf_counter() - began,
     }
     if record:

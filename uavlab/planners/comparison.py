@@ -2,11 +2,12 @@
 
 A single run on a single map says nothing of a method that draws at random. Nor do iterations: one of PSO measures as
 many curves as there are particles, one of PSO-BAS several times as many. So all get the same budget of evaluations
-(curves measured, ants walked), and what is compared are medians and shares over maps and seeds.
+(curves measured, ants walked), and what is compared are medians and shares over maps and seeds. Nor is a curve that was
+refined to be held against a route on the grid: all are refined, or none.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.planners.least_risk import least_risk
+from uavlab.planners.swarm import refine
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap
 from uavlab.route import Route
 from uavlab.statistics import over_maps, share_over_maps
@@ -76,6 +78,8 @@ class Comparison:
         Time of each run [s].
     exact : list of M Routes
         The optima.
+    refinement : float
+        Share of the budget that refined each route; 0 where none was.
     """
 
     planners: list[str]
@@ -84,11 +88,13 @@ class Comparison:
     iterations: list[np.ndarray]
     elapsed: np.ndarray
     exact: list[Route]
+    refinement: float = 0.0
 
     def table(self) -> "pandas.DataFrame":
         """A row per planner: median gap with its 95 % interval, 90 % quantile [%], runs that didn't arrive [%], time.
 
-        The interval is a bootstrap over the maps: runs on the same map are not independent.
+        Its corner says whether the routes are refined, all alike. The interval is a bootstrap over the maps: runs on the same map
+        are not independent.
         """
         import pandas
 
@@ -106,7 +112,8 @@ class Comparison:
                     "seconds": np.median(elapsed),
                 }
             )
-        return pandas.DataFrame(rows).set_index("planner")
+        table = pandas.DataFrame(rows).set_index("planner")
+        return table.rename_axis(index="planner, refined" if self.refinement > 0 else "planner, not refined")
 
     def wins(self, planner: str, other: str) -> tuple[float, float, float]:
         """Share of runs (map, seed) in which a planner's gap is less than another's, and its 95 % interval.
@@ -142,6 +149,7 @@ def compare_planners(
     budget: int = 4000,
     start: npt.ArrayLike = CAMPUS_FLIGHT[0],
     goal: npt.ArrayLike = CAMPUS_FLIGHT[1],
+    refinement: float = 0.0,
     jobs: int | None = None,
     progress: bool = True,
 ) -> Comparison:
@@ -151,7 +159,8 @@ def compare_planners(
     ----------
     planners : mapping of name to function
         Called as planner(risk_map, start, goal, budget=…, rng=…), such as `ant_colony` or, with settings,
-        `functools.partial(waypoint_swarm, optimizer="pso")`. They minimise the risk, as `least_risk` by default.
+        `functools.partial(waypoint_swarm, optimizer="pso", refinement=0)`. They minimise the risk, as `least_risk` by
+        default.
     maps : RiskMap, or several
     seeds : iterable of int
         One run of each planner on each map with each.
@@ -159,6 +168,9 @@ def compare_planners(
         Evaluations of each run.
     start, goal : (3,) arrays
         Positions [m], the same on all maps.
+    refinement : float
+        Share of each budget, from 0 to below 1, that `refine` gets for the route that a planner found with the rest.
+        0: none is refined.
     jobs, progress
         As for `sweep`.
 
@@ -169,20 +181,24 @@ def compare_planners(
     Raises
     ------
     ValueError
-        If there are no planners, maps or seeds, a seed is repeated, a map has no route at all, or a planner takes
-        another number of evaluations than the budget.
+        If there are no planners, maps or seeds, a seed is repeated, a map has no route at all, a planner takes another
+        number of evaluations than the budget, or only some refine what they found.
     """
     seeds, maps = list(seeds), [maps] if isinstance(maps, RiskMap) else list(maps)
     if not planners or not maps or not seeds:
         raise ValueError("planners, maps and seeds must each have at least one")
     if len(set(seeds)) < len(seeds):  # the same run twice would narrow an interval
         raise ValueError(f"seeds must all be different, got {seeds}")
+    checks.number("refinement", refinement)
+    if not 0 <= refinement < 1:
+        raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
     exact = [least_risk(risk_map, start, goal) for risk_map in maps]
     for number, route in enumerate(exact):
         if not route.reached:
             raise ValueError(f"maps must have a route from start to goal, maps[{number}] has none: {route.reason}")
     cases = [
         {"planner": planner, "risk_map": risk_map, "start": start, "goal": goal, "budget": budget, "rng": seed}
+        | {"refinement": refinement}
         for planner in planners.values()
         for risk_map in maps
         for seed in seeds
@@ -194,14 +210,38 @@ def compare_planners(
             raise ValueError(
                 f"planners must use the budget of {budget}, {route.planner} used {route.info['evaluations']}"
             )
+    firsts = routes[:: len(maps) * len(seeds)]
+    refined = [route.info.get("refined", 0) for route in firsts]
+    refuse_unequal(list(planners), refined)
     least = np.array([route.cost for route in exact])[None, :, None]
     costs = np.array([route.cost if route.reached else np.inf for route in routes])
     gaps = costs.reshape(shape) / least - 1
     histories = np.array([route.info["history"] for route in routes]).reshape(*shape, budget) / least[..., None] - 1
     elapsed = np.array([route.info["elapsed"] for route in routes]).reshape(shape)
-    firsts = routes[:: len(maps) * len(seeds)]
-    return Comparison(list(planners), gaps, histories, [r.info["iterations"] for r in firsts], elapsed, exact)
+    iterations = [route.info["iterations"] for route in firsts]
+    return Comparison(list(planners), gaps, histories, iterations, elapsed, exact, max(refined) / budget)
 
 
-def one_run(planner: Planner, **case: Any) -> Route:
-    return planner(**case)
+def refuse_unequal(names: list[str], refined: list[int]) -> None:
+    """`ValueError` if only some of the planners spent evaluations on refinement."""
+    some = [name for name, count in zip(names, refined, strict=True) if count]
+    if some and len(some) < len(names):
+        raise ValueError(
+            f"planners must all be refined or none: {', '.join(some)} refines by itself; give refinement=0 to "
+            f"waypoint_swarm, and refinement to compare_planners, which refines all alike"
+        )
+
+
+def one_run(planner: Planner, risk_map: RiskMap, budget: int, rng: int, refinement: float, **ends: Any) -> Route:
+    """A planner's route, refined with a share of the budget; where none was found, the rest isn't of use to it."""
+    last = int(refinement * budget)
+    found = planner(risk_map=risk_map, budget=budget - last, rng=rng, **ends)
+    if last == 0 or found.info["evaluations"] != budget - last:
+        return found
+    history, info = found.info["history"], {**found.info, "evaluations": budget, "refined": last}
+    if not found.reached:
+        return replace(found, info=info | {"history": np.append(history, np.full(last, np.inf))})
+    better = refine(risk_map, found, rng=rng, budget=last)
+    together = np.append(history, np.minimum(better.info["history"], history[-1]))
+    elapsed = info["elapsed"] + better.info["elapsed"]
+    return replace(better, planner=found.planner, info=info | {"history": together, "elapsed": elapsed})

@@ -126,10 +126,11 @@ def waypoint_swarm(
     -------
     Route
         The curve as short straight legs, in "pso_aco" the ants' route if no curve is better; `cost` as for
-        `least_risk`; `info["control"]`, its control points or corners [m]; `info["evaluations"]`; `info["history"]`,
-        the least cost after each of them, infinite until a curve keeps the limits; `info["iterations"]`, how many had
-        been made at the end of each iteration of the swarm; `info["elapsed"]` [s]. Where none keeps the limits
-        `reached` is False, and `reason` says what the best does wrong.
+        `least_risk`; `info["control"]`, its control points or corners [m]; `info["evaluations"]`, and
+        `info["refined"]`, how many of them for refinement; `info["history"]`, the least cost after each of them,
+        infinite until a curve keeps the limits; `info["iterations"]`, how many had been made at the end of each
+        iteration of the swarm; `info["elapsed"]` [s]. Where none keeps the limits `reached` is False, and `reason` says
+        what the best does wrong.
 
     Raises
     ------
@@ -189,6 +190,7 @@ def waypoint_swarm(
     info = {
         **route.info,
         "evaluations": measure.made,
+        "refined": last,
         "history": measure.history,
         "iterations": np.array(measure.iterations),
         "elapsed": time.perf_counter() - began,
@@ -267,7 +269,8 @@ def refine(
     one_by_one(measure, near(task, route, risk_map, count - 2), PER_SEGMENT // 2, budget, rng)
     better = route_of(measure, risk_map, f"{route.planner} + refined")
     cost = cost_of(task, route, risk_map)
-    info = {"evaluations": budget, "history": np.minimum(measure.history, cost), "elapsed": time.perf_counter() - began}
+    history = np.minimum(measure.history, cost)
+    info = {"evaluations": budget, "refined": budget, "history": history, "elapsed": time.perf_counter() - began}
     if better.cost < cost or cost == np.inf:
         route, cost = better, better.cost
     route = replace(route, cost=cost, info={**route.info, **info})
