@@ -199,8 +199,9 @@ scene.show(City(coarse.occupied, coarse.cell, name="What the planner sees, voxel
 # with $n_x, n_y, n_z$ the numbers of voxels along each axis. Reading the formula from the inside: $i$ slabs of $n_y
 # n_z$ voxels, then $j$ rows of $n_z$, then $k$. It is the position of the voxel in `city.occupied.ravel()`, where
 # `city.occupied` is a Boolean array. One step east adds $n_y n_z$ to the code, one step north adds $n_z$, one step up
-# adds 1. The course's other two papers, RISK-ACO (section 1) and PSO-BAS (section 2), number their nodes too, without a
-# formula. Which order is taken doesn't matter as long as it can be undone.
+# adds 1. The course's other two papers number their nodes too, without a formula: RISK-ACO (section 1) from left to
+# right, from the back to the front, from the top down, which `as_printed=True` does; PSO-BAS (section 2) doesn't say.
+# Which order is taken doesn't matter as long as it can be undone.
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -215,6 +216,7 @@ print(f"back: voxel {tuple(city.index_of(code).tolist())}, centre {tuple(city.ce
 assert code == city.code_of((i, j, k)) == 901_830
 assert not city.occupied.ravel()[code]
 assert (city.index_of(code) == (i, j, k)).all()
+assert city.index_of(city.code_of((i, j, k), as_printed=True), as_printed=True).tolist() == [i, j, k]
 
 # %% [markdown]
 # ## How far is the nearest wall?
