@@ -711,8 +711,8 @@ plot.plan(city, shortest, priced, safe)
 #
 # A shortcut comes too late for one decision: on which side to pass a building. There the lattice route has chosen by
 # its 26 directions, and a subset of its waypoints is on the same side. *Theta\** looks along straight lines while it
-# searches. When A\* expands a node $n$, it offers each neighbour $n'$ the way over $n$. Theta\* offers the straight line
-# from the parent of $n$:
+# searches. When A\* expands a node $n$, it offers each neighbour $n'$ the way over $n$. Theta\* offers the straight
+# line from the parent of $n$:
 #
 # $$ g(n') = g(\text{parent}(n)) + c(\text{parent}(n), n'), \tag{13} $$
 #

@@ -772,9 +772,9 @@ assert better < 0.15
 # %% [markdown]
 # On every map the refined optimum is below the grid's, and hardly a run of the swarm is below it. The swarm's circles
 # differ from map to map more than from seed to seed: on one campus all five runs end 10 % or more above the optimum, on
-# three others all five below it. A metaheuristic pays 4 000 evaluations for a route that is a little worse or, sometimes,
-# a quarter worse, and doesn't know which. What it has to offer is another thing: it needs no grid, and no cost that
-# adds up along the way.
+# three others all five below it. A metaheuristic pays 4 000 evaluations for a route that is a little worse or,
+# sometimes, a quarter worse, and doesn't know which. What it has to offer is another thing: it needs no grid, and no
+# cost that adds up along the way.
 #
 # ## Table 4
 #

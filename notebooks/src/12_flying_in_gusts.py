@@ -287,7 +287,7 @@ def is_blocked(start, goal):
 
 def crashes(planned_routes, disturbance, flights=FLIGHTS, autopilot=gusts_alone):
     """Crashes per 1 000 flights of the routes that arrive."""
-    step = 0.05 if isinstance(disturbance, OffsetProcess) else 0.02
+    step = 0.05 if isinstance(disturbance, OffsetProcess) and not disturbance.rough else 0.02
     runs = [
         monte_carlo(route, city, uav, disturbance, autopilot, rng=[1, n], flights=flights, time_step=step)
         for n, route in enumerate(planned_routes)

@@ -141,7 +141,8 @@ class City:
             As for `City`.
         terrain : Terrain or float, optional
             The ground, in the coordinates of the buildings; one number for level ground at that height. Without it the
-            bottom of the map is the ground, and no obstacle.
+            bottom of the map is the ground, and no obstacle: the lowest floor. Where all buildings float, give terrain
+            or origin, or falls end at the lowest of them.
         voxels : {"touched", "centres"}
             A voxel is occupied when a building reaches into it; or, as in the papers, only when its centre lies in
             one, which loses what is thinner than a voxel.

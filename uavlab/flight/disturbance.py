@@ -95,7 +95,10 @@ class OffsetProcess:
     mean : (2,) or (3,)
         μ [m].
     rough : bool
-        An Ornstein-Uhlenbeck process with the same σ and correlation time, which is beyond its σ again and again.
+        An Ornstein-Uhlenbeck process with the same σ and correlation time, which is beyond its σ again and again. Its
+        path has no speed, so the finer the time steps, the more often it is seen to touch a wall: of 8 000 flights of
+        8 s, 3σ from a wall, 44 per 1 000 crash in steps of 5 to 20 ms, 35 in steps of 50 ms, 27 of 200 ms, at
+        ω_n = 1 rad/s. So a flight takes steps of at most 0.04/ω_n.
 
     Raises
     ------

@@ -43,6 +43,9 @@ TIME_STEP = 0.02
 LONGEST_TURN = 0.2
 """Of the time step times ω_n: beyond it the position control is no longer that of continuous time."""
 
+LONGEST_ROUGH = 0.04
+"""The same for rough offsets, see `OffsetProcess`."""
+
 PATIENCE, PAUSE = 3.0, 60.0
 """A flight is out of time after so many times the planned duration, and so many seconds more."""
 
@@ -242,6 +245,11 @@ def setup_of(
             f"got {time_step:g}"
         )
     first = now_of(disturbance, 0.0)
+    if isinstance(first, OffsetProcess) and first.rough and time_step * fastest > LONGEST_ROUGH * (1 + 1e-9):
+        raise ValueError(
+            f"time_step must be at most {LONGEST_ROUGH / fastest:.3g} s for rough offsets at ω_n = {fastest:g} rad/s, "
+            f"or crashes go unseen between the steps, got {time_step:g}"
+        )
     speed = uav.cruise_speed if autopilot.speed is None else float(autopilot.speed)
     altitude = float(np.clip(way.points[:, 2].mean() - city.origin[2], LOWEST, HIGHEST))
     if isinstance(first, Wind):

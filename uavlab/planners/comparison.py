@@ -93,8 +93,8 @@ class Comparison:
     def table(self) -> "pandas.DataFrame":
         """A row per planner: median gap with its 95 % interval, 90 % quantile [%], runs that didn't arrive [%], time.
 
-        Its corner says whether the routes are refined, all alike. The interval is a bootstrap over the maps: runs on the same map
-        are not independent.
+        Its corner says whether the routes are refined, all alike. The interval is a bootstrap over the maps: runs on
+        the same map are not independent.
         """
         import pandas
 

@@ -66,7 +66,8 @@ def median_offsets(
     peak_factor : float
         Strongest gust, in standard deviations above the mean; 2 to 3.5.
     stiffness : float
-        Offset when the drag eats the whole reserve [m]; 8.5 gives the distances of REPARE Table 4.
+        Offset when the drag eats the whole reserve [m]. 8.5 gives the distances of REPARE Table 4 with the ξ₀ = 1 m and
+        the gusts of 1.75 times the mean of `uavlab.resilience`; with the defaults here they are 1 m less.
     still_offset : float
         ξ₀ in calm [m], above 0: no position is held exactly.
 

@@ -18,6 +18,7 @@ from uavlab.weather.forces import (
     reference_wind,
     wind_drag,
 )
+from uavlab.weather.own_record import WeatherRecord, mean_wind, read_weather
 from uavlab.weather.records import greensboro_weather
 from uavlab.weather.turbulence import DrydenParameters, dryden_gusts, dryden_parameters, dryden_spectrum
 
@@ -25,6 +26,7 @@ __all__ = [
     "DrydenParameters",
     "ReferenceWind",
     "Weather",
+    "WeatherRecord",
     "air_density",
     "air_speed_held",
     "course_wind_limit",
@@ -35,9 +37,11 @@ __all__ = [
     "ground_speed_held",
     "grounded_by",
     "lift_margin",
+    "mean_wind",
     "mean_wind_limit",
     "rain_force",
     "reachable_ground_speed",
+    "read_weather",
     "reference_wind",
     "wind_drag",
     "wind_limit",
