@@ -5,15 +5,25 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import numpy.typing as npt
 
+MOST = 10**9
+"""What is counted to more than this never ends."""
+
+NO_NUMBERS = {"U": "text", "S": "text", "c": "complex numbers", "M": "dates", "m": "times", "V": "records"}
+"""By NumPy's kinds of arrays; from some of them it would make numbers."""
+
 
 def numbers(name: str, value: npt.ArrayLike) -> np.ndarray:
-    """The argument as floats; text is refused, even where NumPy would read a number in it."""
+    """The argument as floats; text, dates and None are refused, even where NumPy would read a number in them."""
+    if np.ma.is_masked(value):
+        raise ValueError(f"{name} has masked values, for which no number stands: fill them, or leave them out")
     try:
         values = np.asarray(value)
-        if values.dtype.kind == "U":
-            raise ValueError(f"got text, {value!r:.60}")
+        if values.dtype.kind in NO_NUMBERS:
+            raise ValueError(f"got {NO_NUMBERS[values.dtype.kind]}, {value!r:.60}")
+        if value is None:
+            raise ValueError("got None")
         return np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as wrong:
+    except (TypeError, ValueError, OverflowError) as wrong:
         raise ValueError(f"{name} must be a number or an array of numbers: {wrong}") from wrong
 
 
@@ -26,15 +36,20 @@ def frozen(values: npt.ArrayLike, kind: npt.DTypeLike = float) -> np.ndarray:
     return array
 
 
-def number(name: str, value: npt.ArrayLike) -> None:
-    shape = numbers(name, value).shape
-    if shape:
-        raise ValueError(f"{name} must be one number, got an array of shape {shape}")
+def number(name: str, value: npt.ArrayLike) -> float:
+    """The argument as one float: 10 of 8 bits, times 3600, would be too much for them."""
+    values = numbers(name, value)
+    if values.shape:
+        raise ValueError(f"{name} must be one number, got an array of shape {values.shape}")
+    return float(values)
 
 
-def whole(name: str, value: int, least: int) -> None:
-    if not (isinstance(value, int | np.integer) and value >= least):
+def whole(name: str, value: int, least: int, most: int = MOST) -> int:
+    if not (isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least):
         raise ValueError(f"{name} must be a whole number of at least {least}, got {value!r}")
+    if value > most:
+        raise ValueError(f"{name} must be at most {most:,}, or it never ends, got {int(value):.3g}")
+    return int(value)
 
 
 def generator(name: str, rng: np.random.Generator | int | Sequence[int]) -> np.random.Generator:
@@ -65,14 +80,14 @@ def positive(name: str, value: npt.ArrayLike) -> None:
     refuse(values, np.isfinite(values) & (values > 0), f"{name} must be finite and above 0")
 
 
-def not_negative_number(name: str, value: npt.ArrayLike) -> None:
-    number(name, value)
-    not_negative(name, value)
+def not_negative_number(name: str, value: npt.ArrayLike) -> float:
+    not_negative(name, one := number(name, value))
+    return one
 
 
-def positive_number(name: str, value: npt.ArrayLike) -> None:
-    number(name, value)
-    positive(name, value)
+def positive_number(name: str, value: npt.ArrayLike) -> float:
+    positive(name, one := number(name, value))
+    return one
 
 
 def at_least_one(name: str, value: npt.ArrayLike) -> None:
@@ -182,6 +197,14 @@ def samples(values: npt.ArrayLike, *, least: int, axes: int = 1) -> np.ndarray:
     if (np.ptp(values, axis=0) == 0).any():
         raise ValueError("samples must differ: all are equal, so σ would be 0")
     return values
+
+
+def as_floats(thing: object, *names: str) -> None:
+    """Make fields of a frozen dataclass floats: a NumPy scalar of 8 bits can't be squared."""
+    for name in names:
+        value = getattr(thing, name)
+        if isinstance(value, np.generic | int) and not isinstance(value, bool):
+            object.__setattr__(thing, name, float(value))
 
 
 def refuse(values: np.ndarray, right: np.ndarray, demand: str) -> None:

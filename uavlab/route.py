@@ -84,7 +84,7 @@ class Route:
         check_promises(self)
         if not self.max_length > 0:
             raise ValueError(f"max_length must be above 0, got {self.max_length!r}")
-        points = np.array(self.points, dtype=float)
+        points = checks.numbers("points", self.points).copy()
         if points.ndim != 2 or points.shape[1] != 3:
             raise ValueError(f"points must have shape (N, 3), got {points.shape}")
         if not np.isfinite(points).all():
@@ -191,7 +191,7 @@ class Route:
         if np.shape(values) != city.shape:
             raise ValueError(f"values must have the city's shape {city.shape}, got {np.shape(values)}")
         index, length = self.voxels(city)
-        return float(np.asarray(values, dtype=float)[tuple(index.T)] @ length)
+        return float(checks.numbers("values", values)[tuple(index.T)] @ length)
 
     def voxels(self, city: City) -> tuple[np.ndarray, np.ndarray]:
         """The voxels (M, 3) that the route passes through, in order, and its length (M,) in each [m].
@@ -227,7 +227,15 @@ class Route:
         return replace(self, points=np.vstack([*legs, self.points[-1:]]), takeoff=takeoff, landing=landing)
 
     def to_csv(self, path: str | Path) -> None:
-        """Write waypoints and the distance flown to each, in metres: columns x_m, y_m, z_m, distance_m."""
+        """Write waypoints and the distance flown to each, in metres: columns x_m, y_m, z_m, distance_m.
+
+        Raises
+        ------
+        ValueError
+            If `path` is no path; a number would be a file that is open already.
+        """
+        if not isinstance(path, str | Path):
+            raise ValueError(f"path must be the name of a file, got {path!r}")
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(["x_m", "y_m", "z_m", "distance_m"])

@@ -437,7 +437,7 @@ def tube(points: np.ndarray, radius: float, *, end_radius: float | None = None, 
     """Triangles (T, 3, 3) of a round tube along a polyline (N, 3); with `end_radius` each leg is a cone."""
     angle = np.linspace(0.0, 2 * np.pi, sides + 1)[:, None]
     triangles = []
-    for start, end in pairwise(points):
+    for start, end in pairwise(np.asarray(points, dtype=float)):
         along = end - start
         length = np.linalg.norm(along)
         if length == 0:

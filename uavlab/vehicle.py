@@ -102,6 +102,7 @@ class UAV:
                 continue
             check = checks.not_negative_number if item.name in ("payload", "reserve") else checks.positive_number
             check(item.name, value)
+        checks.as_floats(self, *(item.name for item in fields(self) if item.name != "name"))
         if self.figure_of_merit >= 1 / INDUCED:
             raise ValueError(
                 f"figure_of_merit must be below {1 / INDUCED:.2f}, what losses of the induced flow leave, "

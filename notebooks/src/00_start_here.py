@@ -118,7 +118,7 @@ plot.profile(city, shortest)
 # %%
 # NBVAL_CHECK_OUTPUT
 safe = astar(city, start, goal, min_clearance=safe_distance)
-straight = shortcut(safe, city, min_clearance=safe_distance)
+straight = shortcut(safe, city)
 for route in (shortest, safe, straight):
     print(f"{route.planner:<14} {route.length:6.1f} m, nearest to a building {route.clearance(city):.1f} m")
 
@@ -147,7 +147,7 @@ scene.show(city, straight, shortest, safe_distance=safe_distance)
 
 # %%
 # NBVAL_CHECK_OUTPUT
-curve = smooth(straight, city, uav, min_clearance=safe_distance)
+curve = smooth(straight, city, uav)
 wind = Wind.from_weather(weather)
 report = feasibility(curve, uav, city, wind=wind.mean)
 print(f"{curve.length:.1f} m, {curve.info['rounds']} rounds of repair")

@@ -257,9 +257,9 @@ plot.finished(figure)
 # NBVAL_CHECK_OUTPUT
 city = table1_city()
 grid_route = astar(city, (90.5, 18.5, 30.5), (50.5, 44.5, 30.5), min_clearance=1.0)
-route = shortcut(grid_route, city, min_clearance=1.0)
-raw, repaired = Curve(route.points, planner="not repaired"), smooth(route, city, uav)
-kept = smooth(route, city, uav, min_clearance=1.0)
+route = shortcut(grid_route, city)
+raw, repaired = Curve(route.points, planner="not repaired"), smooth(route, city, uav, min_clearance=0.0)
+kept = smooth(route, city, uav)  # the metre that the route promised
 for name, curve in (("not repaired", raw), ("repaired", repaired), ("keeping 1 m", kept)):
     sharpest = curve.curvature.max()
     print(f"{name:<13} {len(curve.control):2d} points, clear {curve.clearance(city):.2f} m, κ ≤ {sharpest:.3f} 1/m,",
@@ -276,20 +276,21 @@ plot.corner(city, raw, *both, center=(62, 22, 30.5), reach=13, diameter=uav.diam
 # `smooth` measures the whole curve: the exact distance to the voxels at points an eighth of the body apart, less what
 # the curve may do in between. Where the body touches, it puts midpoints into the legs around: shorter legs, smaller
 # cuts (Eq. 5). After six rounds it repeats points, twice and thrice, which pulls the curve down to the straight lines;
-# those are clear, since `smooth` refuses a route that isn't.
+# those are clear, since `smooth` refuses a route that isn't. A route remembers the distance that it was planned with,
+# and `smooth` keeps that unless it is asked for less; `min_clearance=0.0` leaves room for the body only.
 #
 # How often is it needed? 170 pairs, planned to keep 1 m, so that each route itself is clear.
 
 # %%
 pairs = city.random_pairs(170, 11, apart=40, min_clearance=1.5)
 on_grid = [astar(city, *pair, min_clearance=1.0) for pair in pairs]
-any_angle = [shortcut(found, city, min_clearance=1.0) for found in on_grid]
+any_angle = [shortcut(found, city) for found in on_grid]
 bent = np.array([len(found.points) > 2 for found in any_angle])
 clear = {
     "every node of the grid": np.array([Curve(found.points).clearance(city) for found in on_grid]),
     "any-angle, not repaired": np.array([Curve(found.points).clearance(city) for found in any_angle]),
 }
-mended = {number: smooth(any_angle[number], city, uav) for number in np.flatnonzero(bent)}
+mended = {number: smooth(any_angle[number], city, uav, min_clearance=0.0) for number in np.flatnonzero(bent)}
 clear["any-angle, repaired"] = clear["any-angle, not repaired"].copy()  # straight routes have nothing to repair
 clear["any-angle, repaired"][bent] = [curve.clearance(city) for curve in mended.values()]
 

@@ -1,5 +1,7 @@
 """Gusts in the loop against their spectra and correlations, offsets by gusts against closed forms."""
 
+from dataclasses import replace
+
 import numba
 import numpy as np
 import pytest
@@ -219,7 +221,7 @@ def test_rough_offsets_are_flown_in_fine_steps_only():
         ValueError, match=r"time_step must be at most 0\.04 s for rough offsets at ω_n = 1 rad/s, or crash"
     ):
         fly(straight(), SKY, LIGHT_QUADROTOR, rough, EXACT, rng=0, time_step=0.05)
-    tight = EXACT._replace(controller=ADVANCED)
+    tight = replace(EXACT, controller=ADVANCED)
     with pytest.raises(ValueError, match=r"time_step must be at most 0\.025 s for rough offsets at ω_n = 1\.6 rad/s"):
         fly(straight(), SKY, LIGHT_QUADROTOR, rough, tight, rng=0, time_step=0.03)
     fly(straight(), SKY, LIGHT_QUADROTOR, OffsetProcess(1.0), EXACT, rng=0, time_step=0.2)

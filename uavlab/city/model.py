@@ -83,6 +83,8 @@ class City:
     source: Source | None = None
 
     def __post_init__(self) -> None:
+        if np.ma.is_masked(self.occupied):
+            raise ValueError("occupied has masked voxels: say of each whether it is occupied")
         occupied = checks.frozen(self.occupied, bool)
         if occupied.ndim != 3 or occupied.size == 0:
             raise ValueError(f"occupied must be an array (nx, ny, nz) with at least one voxel, got {occupied.shape}")

@@ -27,7 +27,7 @@ from uavlab.flight.motion import (
     State,
     steps_to_goal,
 )
-from uavlab.flight.path import Path, constant_speed, planned_speed, why_grounded
+from uavlab.flight.path import CREEP, Path, constant_speed, planned_speed, why_grounded
 from uavlab.flight.results import Energy, Flight, Flights
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route
@@ -45,6 +45,15 @@ LONGEST_TURN = 0.2
 
 LONGEST_ROUGH = 0.04
 """The same for rough offsets, see `OffsetProcess`."""
+
+MOST_STEPS = 5e6
+"""Of one flight as planned; they take some seconds, in which nothing can interrupt it."""
+
+MOST_FLIGHTS = 1_000_000
+"""In one call; each leaves some kB."""
+
+SLOWEST_SHARE = 0.01
+"""Of the cruise speed that a controller may take."""
 
 PATIENCE, PAUSE = 3.0, 60.0
 """A flight is out of time after so many times the planned duration, and so many seconds more."""
@@ -180,7 +189,7 @@ def monte_carlo(
     ValueError
         As for `fly`.
     """
-    checks.whole("flights", flights, least=1)
+    checks.whole("flights", flights, least=1, most=MOST_FLIGHTS)
     checks.positive_number("every", every)
     setup, grounded = setup_of(route, city, uav, disturbance, autopilot, time_step)
     if setup is None:
@@ -236,8 +245,11 @@ def setup_of(
     checks.instance("route", way, Route)
     if not way.reached or not way.length > 0:
         raise ValueError(f"route must lead from a start to a goal{': ' * bool(way.reason)}{way.reason}")
-    checks.positive_number("time_step", time_step)
+    time_step = checks.positive_number("time_step", time_step)
     controllers = [autopilot.controller] if autopilot.monitor is None else [BASIC, ADVANCED]
+    for controller in controllers:
+        checks.positive_number("the controller's natural_frequency", controller.natural_frequency)
+        checks.within("the controller's speed_share", controller.speed_share, SLOWEST_SHARE, 1.0, "of the cruise speed")
     fastest = max(controller.natural_frequency for controller in controllers)
     if time_step * fastest > LONGEST_TURN * (1 + 1e-9):
         raise ValueError(
@@ -251,6 +263,13 @@ def setup_of(
             f"or crashes go unseen between the steps, got {time_step:g}"
         )
     speed = uav.cruise_speed if autopilot.speed is None else float(autopilot.speed)
+    slowest = min(controller.speed_share for controller in controllers)
+    steps = way.length / (max(speed, CREEP) * slowest * time_step)
+    if steps > MOST_STEPS:
+        raise ValueError(
+            f"time_step of {time_step:g} s makes {steps:.1g} steps of a flight of {way.length:.0f} m, of which at most "
+            f"{MOST_STEPS:,.0f} are made: take longer ones"
+        )
     altitude = float(np.clip(way.points[:, 2].mean() - city.origin[2], LOWEST, HIGHEST))
     if isinstance(first, Wind):
         if autopilot.gps != PERFECT_GPS and time_step * autopilot.gps.rate > 1 + 1e-9:
@@ -276,6 +295,8 @@ def first_controller(autopilot: Autopilot) -> Controller:
 
 def now_of(disturbance: Disturbance, time: float) -> Wind | OffsetProcess:
     """The disturbance at a time."""
+    if isinstance(disturbance, type):
+        raise ValueError(f"disturbance must be one {disturbance.__name__}, as {disturbance.__name__}(), got its class")
     now = disturbance(time) if callable(disturbance) else disturbance
     if not isinstance(now, Wind | OffsetProcess):
         raise ValueError(f"disturbance must be a Wind or an OffsetProcess, or return one, got {type(now).__name__}")

@@ -8,11 +8,14 @@ import numpy.typing as npt
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ndtr
-from scipy.stats import rayleigh, rice
+from scipy.stats import norm, rayleigh, rice
 
 from uavlab import checks
 from uavlab.offsets.pauta import PAUTA_COVERAGE, pauta_radius
 from uavlab.offsets.pauta import coverage as coverage_of
+
+NEARLY_NORMAL = 30.0
+"""Of the mean offset over σ: from here on the distance is normal to a millionth, and Rice's law overflows."""
 
 
 @dataclass(frozen=True)
@@ -175,7 +178,7 @@ def safety_domain(
         If a sample is not finite, there are too few, they lie on a line, or the coverage is not between 0 and 1.
     """
     model = JointOffset.fit(samples)
-    radius_in_sigma = float(pauta_radius(1 if as_printed else 2, coverage))
+    radius_in_sigma = float(pauta_radius(1 if checks.flag("as_printed", as_printed) else 2, coverage))
     held = float(coverage_of(radius_in_sigma, 2))
     radius = radius_in_sigma * max(model.sigma) if as_printed else model.circle(coverage)
     points = np.asarray(samples, dtype=float)
@@ -211,6 +214,10 @@ def magnitude(sigma: float, mean_length: float = 0.0) -> Any:
     ValueError
         If σ is not above 0 or the mean offset negative.
     """
-    checks.positive("sigma", sigma)
-    checks.not_negative("mean_length", mean_length)
-    return rayleigh(scale=sigma) if mean_length == 0 else rice(mean_length / sigma, scale=sigma)
+    sigma = checks.positive_number("sigma", sigma)
+    away = checks.not_negative_number("mean_length", mean_length) / sigma
+    if away == 0:
+        return rayleigh(scale=sigma)
+    if away > NEARLY_NORMAL:  # SciPy's Bessel functions overflow
+        return norm(loc=sigma * np.sqrt(away**2 + 1), scale=sigma * np.sqrt(1 - 1 / (2 * away**2)))
+    return rice(away, scale=sigma)

@@ -80,6 +80,7 @@ def bas(
         another argument is out of its range.
     """
     rng = checks.generator("rng", rng)
+    checks.flag("as_printed", as_printed)
     if decay is None and not greedy:
         raise ValueError("decay must be a number unless greedy: a beetle that walks either way has no gain to follow")
     antennae = antennae_of(bounds, antenna, decay, block, as_printed)

@@ -115,6 +115,7 @@ def flown(x, velocity, best, leader, low, high, settings, used, rng):
 
 def swarm_settings(inertia, c1, c2, v_max, as_printed):
     """ω's ends, c1, c2 and v_max, checked."""
+    checks.flag("as_printed", as_printed)
     ends = checks.numbers("inertia", PRINTED_INERTIA if as_printed else inertia)
     if ends.shape != (2,) or not np.isfinite(ends).all():
         raise ValueError(f"inertia must be two numbers, ω at the beginning and at the end, got {inertia!r}")

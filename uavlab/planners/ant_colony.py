@@ -151,6 +151,7 @@ def ant_colony(
     """
     began = time.perf_counter()
     rng = checks.generator("rng", rng)
+    checks.flag("as_printed", as_printed)
     habits = PRINTED if as_printed else checked_habits(alpha, beta, gamma, evaporation, deposit, pheromone)
     checks.whole("ants", ants, least=1)
     checks.whole("splits", splits, least=0)

@@ -86,6 +86,7 @@ def astar(
         If start or goal can't be flown from or to, both lie in one voxel, or an argument is out of its range.
     """
     checks.one_of("heuristic", heuristic, HEURISTICS)
+    checks.flag("as_printed", as_printed)
     if as_printed and price is None:
         raise ValueError("as_printed needs a price: without a penalty zone Eq. 13 is plain A*")
     airspace = Airspace(city, min_clearance, min_height, max_height)

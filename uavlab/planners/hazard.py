@@ -6,13 +6,13 @@ fast. As a price per metre it lets a route pass a gap quickly where that is wort
 """
 
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.kept import kept_for_city
 from uavlab.city.model import locked
 from uavlab.offsets import crossing_rate
 from uavlab.planners.astar import cheapest_route
@@ -77,7 +77,7 @@ def hazard_price(
     return cached_price(city, float(sigma), float(uav_radius), mean, float(crash_price * natural_frequency / speed))
 
 
-@lru_cache(4)
+@kept_for_city(4)
 def cached_price(
     city: City, sigma: float, uav_radius: float, mean_offset: tuple[float, ...], crash_price: float
 ) -> np.ndarray:

@@ -183,7 +183,7 @@ def nearest_allowed(city: City, position: np.ndarray, allowed: np.ndarray) -> st
 
 def checked_price(city: City, price: npt.ArrayLike) -> tuple[np.ndarray, float]:
     """A price per metre as a float array of the city's shape, and the cheapest."""
-    checked = np.ascontiguousarray(price, dtype=float)
+    checked = np.ascontiguousarray(checks.numbers("price", price))
     if checked.shape != city.shape:
         raise ValueError(f"price must have the city's shape {city.shape}, got {checked.shape}")
     cheapest = float(checked.min())

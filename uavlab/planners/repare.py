@@ -9,7 +9,6 @@ the route is planned again.
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.kept import kept_for_city
 from uavlab.city.model import locked
 from uavlab.planners.astar import cheapest_route, penalty_zone
 from uavlab.planners.potential_field import repulsion
@@ -125,6 +125,7 @@ def repare(
         out of its range.
     """
     checks.positive_number("interval", interval)
+    checks.flag("as_printed", as_printed)
 
     def conditions_at(clock: float) -> Conditions:
         observed = disturbance(clock) if callable(disturbance) else disturbance
@@ -328,7 +329,7 @@ def repare_price(
     return cached_price(city, for_conditions, offset, (penalty, force_weight, load_weight), shape)
 
 
-@lru_cache(4)
+@kept_for_city(4)
 def cached_price(
     city: City,
     now: Conditions,

@@ -5,6 +5,7 @@ its probability; the class to fly with is the one that the offset doesn't exceed
 own JSON, in which it also keeps what it was trained on: it refuses other features, and warns outside of their ranges.
 """
 
+import hashlib
 import json
 import warnings
 from dataclasses import dataclass, replace
@@ -240,6 +241,8 @@ class OffsetPredictor:
                  "margin": training.margin, "ranges": training.ranges}  # fmt: skip
         booster = training.booster.copy()
         booster.set_attr(**{ATTRIBUTE: json.dumps(known)})
+        known["fingerprint"] = fingerprint(json.loads(booster.save_raw("json")))
+        booster.set_attr(**{ATTRIBUTE: json.dumps(known)})
         Path(path).write_bytes(booster.save_raw("json"))
 
     @classmethod
@@ -262,19 +265,22 @@ class OffsetPredictor:
         FileNotFoundError
             If there is no such file.
         ValueError
-            If it isn't such a file, or was trained on other features.
+            If it isn't such a file, was changed since, or was trained on other features.
         """
         xgboost = require("xgboost")
         content = Path(path).read_bytes()
         booster = xgboost.Booster()
-        try:  # as plain JSON first: XGBoost ends the process on an empty file
-            known = json.loads(json.loads(content)["learner"]["attributes"][ATTRIBUTE])
+        try:  # as plain JSON first: XGBoost ends the process on an empty file, and on some that were changed
+            model = json.loads(content)
+            known = json.loads(model["learner"]["attributes"][ATTRIBUTE])
+            if known["fingerprint"] != fingerprint(model):
+                raise ValueError("its fingerprint is another")
             booster.load_model(bytearray(content))
             ranges = {name: (float(low), float(high)) for name, (low, high) in known["ranges"].items()}
             training = Training(booster, float(known["spread"]), float(known["margin"]), ranges)
             loaded = cls(tuple(ranges), known["class_count"], known["quantile"], training)
-        except (AttributeError, KeyError, TypeError, ValueError, xgboost.core.XGBoostError) as wrong:
-            raise ValueError(f"{path} is no file that OffsetPredictor.save wrote") from wrong
+        except (AttributeError, KeyError, TypeError, ValueError, RecursionError, xgboost.core.XGBoostError) as wrong:
+            raise ValueError(f"{path} is no file that OffsetPredictor.save wrote, or was changed since") from wrong
         found = tuple(booster.feature_names or ())
         if found != tuple(features):
             lacks = [name for name in features if name not in found]
@@ -284,3 +290,9 @@ class OffsetPredictor:
                 f"unknown: {', '.join(unknown) or 'none, but their order differs'}"
             )
         return loaded
+
+
+def fingerprint(model: dict[str, Any]) -> str:
+    """SHA-256 of a model in XGBoost's JSON, but for what `OffsetPredictor` adds to it."""
+    learner = {**model["learner"], "attributes": {}}
+    return hashlib.sha256(json.dumps({**model, "learner": learner}, sort_keys=True).encode()).hexdigest()

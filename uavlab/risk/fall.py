@@ -20,6 +20,9 @@ AIR_DENSITY = 1.225
 PERSON_RADIUS, PERSON_HEIGHT = 0.25, 1.65
 """r_p and h_p [m] (RISK-ACO and PSO-BAS Table 2)."""
 
+HIGHEST = 50_000.0
+"""From which a fall is followed [m]; air as dense as on the ground is wrong long before."""
+
 
 def terminal_speed(uav: UAV = RISK_QUADROTOR, *, air_density: float = AIR_DENSITY) -> float:
     """Speed at which drag carries the weight, √(2 m g / (R_I A ρ_A)) [m/s]; 62.6 m/s with the papers' values.
@@ -67,7 +70,7 @@ def fall_speed(
     checks.not_negative("height", height)
     fastest = terminal_speed(uav, air_density=air_density)
     exponent = -2 * GRAVITY * np.asarray(height, dtype=float) / fastest**2
-    return fastest * np.sqrt(-np.expm1(exponent / 2 if as_printed else exponent))
+    return fastest * np.sqrt(-np.expm1(exponent / 2 if checks.flag("as_printed", as_printed) else exponent))
 
 
 class Fall(NamedTuple):
@@ -114,8 +117,8 @@ def ballistic_fall(
     ValueError
         If an argument is negative where it must not be, or not finite.
     """
-    checks.not_negative("height", height)
-    heights = np.asarray(height, dtype=float)
+    checks.within("height", height, 0.0, HIGHEST, "m")
+    heights = checks.numbers("height", height)
     path = wreck_path(uav, speed, pitch, float(heights.max(initial=0.0)), air_density)
     apex = max(float(path.t_events[1][0]) if len(path.t_events[1]) else 0.0, 0.0)
     times = apex + (path.t[-1] - apex) * np.linspace(0.0, 1.0, 1000) ** 2  # the first millimetres take long

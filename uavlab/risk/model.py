@@ -68,6 +68,8 @@ class RiskMap:
         checks.within("vehicle_share", self.vehicle_share, 0.0, 1.0, "of the ground")
         for name in ("safe_height", "min_height"):
             checks.not_negative_number(name, getattr(self, name))
+        checks.as_floats(self, "safe_height", "min_height")
+        checks.flag("as_printed", self.as_printed)
 
     def __repr__(self) -> str:
         return f"<RiskMap of {self.city.name}: {' × '.join(map(str, self.city.shape))} voxels of {self.city.cell:g} m>"
@@ -172,8 +174,7 @@ class RiskMap:
         ValueError
             If the speed is not above 0, the route leaves the map, or there is none.
         """
-        speed = self.uav.cruise_speed if speed is None else speed
-        checks.positive_number("speed", speed)
+        speed = checks.positive_number("speed", self.uav.cruise_speed if speed is None else speed)
         check_route(route)
         return route.integral(self.city, self.rate) / (3600 * speed)
 

@@ -125,6 +125,7 @@ def person_rate(
     ValueError
         If an argument is out of its range, or `ballistic` and `as_printed` are asked for at once.
     """
+    checks.flag("as_printed", as_printed)
     if ballistic and as_printed:
         raise ValueError("as_printed and ballistic exclude each other: the papers print the closed form only")
     check_density(population_density)

@@ -124,7 +124,7 @@ def basis_functions(t: npt.ArrayLike, knots: npt.ArrayLike, degree: int = 3, *, 
     checks.within("t", t, knots[0], knots[-1], "(the knots)")
     t = np.atleast_1d(t)[:, None]
     low, high = knots[:-1], knots[1:]
-    inside = (t >= low) & (t <= high) if as_printed else (t >= low) & (t < high)
+    inside = (t >= low) & (t <= high) if checks.flag("as_printed", as_printed) else (t >= low) & (t < high)
     if not as_printed:
         last = np.flatnonzero(high > low)[-1]
         inside[:, last] |= t[:, 0] == high[last]
@@ -172,6 +172,7 @@ def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.nda
 
 def subdivided(control: np.ndarray) -> np.ndarray:
     """Control points (2N − 1, D) of the same curve, twice as dense (Lane and Riesenfeld 1980)."""
+    control = np.asarray(control, dtype=float)
     finer = np.empty((2 * len(control) - 1, control.shape[1]))
     finer[0::2] = control
     finer[2:-1:2] = (control[:-2] + 6 * control[1:-1] + control[2:]) / 8
@@ -181,6 +182,7 @@ def subdivided(control: np.ndarray) -> np.ndarray:
 
 def fitted(points: np.ndarray, count: int) -> np.ndarray:
     """`count` control points of the B-spline nearest to a line of points (M, D), by least squares; the ends stay."""
+    points = np.asarray(points, dtype=float)
     wanted = spread(points, 8 * (count - 1) + 1)
     basis = cubic_bspline(np.eye(count), per_segment=8)
     rest = wanted - basis[:, [0, -1]] @ points[[0, -1]]

@@ -94,7 +94,7 @@ class Feasibility:
         return [
             (
                 limit.name,
-                f"{'≥' if limit.at_least else '≤'} {limit.limit:.3g} {limit.unit}",
+                f"{'>=' if limit.at_least else '<='} {limit.limit:.3g} {limit.unit}",
                 f"{limit.worst:.3g} {limit.unit}",
                 f"{limit.distance:.1f} m, {checks.show(np.round(limit.place, 1))}",
                 "yes" if limit.met else "NO",
@@ -113,7 +113,10 @@ class Feasibility:
         heads = "".join(
             f"<th>{head}</th>" for head in ("limit", f"at {self.speed:.3g} m/s", "worst", "after, at", "met")
         )
-        rows = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in self.rows())
+        signs = str.maketrans({">": "≥", "<": "≤", "=": ""})  # which not every terminal can print
+        rows = "".join(
+            "<tr>" + "".join(f"<td>{cell.translate(signs)}</td>" for cell in row) + "</tr>" for row in self.rows()
+        )
         return f"<table><tr>{heads}</tr>{rows}</table>"
 
 
@@ -184,6 +187,7 @@ def feasibility(
     checks.instance("curve", curve, Curve)
     checks.instance("uav", uav, UAV)
     checks.instance("city", city, City)
+    checks.flag("as_printed", as_printed)
     whole, curve = curve, curve.en_route
     begins = float(whole.distance[np.searchsorted(whole.parameter, whole.takeoff)])
     speed = uav.cruise_speed if speed is None else speed

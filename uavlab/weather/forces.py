@@ -71,6 +71,7 @@ class Weather:
     def __post_init__(self) -> None:
         for item in fields(self):
             checks.number(item.name, getattr(self, item.name))
+        checks.as_floats(self, *(item.name for item in fields(self)))
         checks.air(self.temperature_c, self.humidity_percent, self.pressure_hpa)
         for name in ("forecast_wind", "forecast_max_wind", "measured_wind", "rain_mm_per_h", "radiation"):
             checks.not_negative(name, getattr(self, name))
@@ -173,7 +174,7 @@ def rain_force(
     checks.positive("drop_speed", drop_speed)
     checks.within("restitution", restitution, 0.0, 1.0, "(0: drops stick, 1: they bounce back)")
     pressure = WATER_DENSITY * np.asarray(rain_mm_per_h, dtype=float) / 3.6e6 * drop_speed
-    return pressure * restitution if as_printed else pressure * area * (1.0 + restitution)
+    return pressure * restitution if checks.flag("as_printed", as_printed) else pressure * area * (1.0 + restitution)
 
 
 def lift_margin(
@@ -206,7 +207,11 @@ def lift_margin(
     checks.not_negative("rain", rain)
     checks.at_least_one("safety_factor", safety_factor)
     rain = np.asarray(rain, dtype=float)
-    return uav.thrust - safety_factor * uav.weight - (rain if as_printed else safety_factor * rain)
+    return (
+        uav.thrust
+        - safety_factor * uav.weight
+        - (rain if checks.flag("as_printed", as_printed) else safety_factor * rain)
+    )
 
 
 def reference_wind(
@@ -248,7 +253,7 @@ def reference_wind(
         checks.not_negative_number(name, value)
     checks.at_least_one("gust_factor", gust_factor)
     mean = max(forecast_mean, measured_mean)
-    return ReferenceWind(mean, mean if as_printed else max(forecast_max, gust_factor * mean))
+    return ReferenceWind(mean, mean if checks.flag("as_printed", as_printed) else max(forecast_max, gust_factor * mean))
 
 
 def reachable_ground_speed(air_speed: float, wind: npt.ArrayLike, course: npt.ArrayLike) -> np.ndarray:
@@ -330,7 +335,7 @@ def wind_drag(
     checks.positive("air_density", air_density)
     wind, ground_velocity = checks.vectors(wind=wind, ground_velocity=ground_velocity)
     half = 0.5 * np.asarray(air_density, dtype=float)[..., None] * drag_area
-    if as_printed:
+    if checks.flag("as_printed", as_printed):
         return half * ground_velocity
     relative = wind - ground_velocity
     return half * np.linalg.norm(relative, axis=-1, keepdims=True) * relative
