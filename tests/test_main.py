@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from uavlab.__main__ import main
-from uavlab.flight import Flights
-from uavlab.report import Trial
+from uavlab.__main__ import free_memory, main, tell
+from uavlab.flight import Flights, Wind
+from uavlab.report import Conditions, Trial, trial_table
+from uavlab.vehicle import LIGHT_QUADROTOR
 
 pytestmark = pytest.mark.filterwarnings("error:.*city.source tells all:UserWarning")
 
@@ -69,7 +70,9 @@ def test_in_too_much_wind_it_stays_on_the_ground(tmp_path, capsys):
     assert main(["--wind", "20", "--out", str(out)]) == 1
     said = capsys.readouterr().out
     assert re.match(r"grounded: gusts: 35.0 m/s, and the thrust left over holds [\d.]+ m/s; head wind: ", said)
-    assert not out.exists()
+    page = out.read_text(encoding="utf-8")  # no older one seems to be the answer
+    assert "<h1>Grounded in Table 1</h1>" in page
+    assert rows_of(page)["grounded"].startswith("gusts: 35.0 m/s")
 
 
 def test_a_route_that_scrapes_a_wall_is_drawn_but_not_flown(tmp_path, capsys):
@@ -141,6 +144,9 @@ def test_no_way_is_an_answer_with_its_own_exit_code(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["--detour", "nan"], "--detour must be a percentage, finite and at least 0, got nan"),
+        (["--out", "."], "can't write .: Is a directory; choose another file with --out"),
+        (["--flights", "9" * 31], "--flights must be from 0 to 1,000,000, got 1e+31"),
         (["--out", "no/such/folder/page.html"], "can't write no/such/folder/page.html: No such file or directory"),
         (["--city", "campus", "--detour", "-3"], "--detour must be a percentage, finite and at least 0, got -3"),
         (["--city", "campus", "--detour", "inf"], "--detour must be a percentage, finite and at least 0, got inf"),
@@ -150,7 +156,7 @@ def test_no_way_is_an_answer_with_its_own_exit_code(tmp_path, capsys):
         (["--clearance", "60"], "--clearance 60: no voxel of the map is that far from all obstacles"),
         (["--wind", "-1"], "forecast_wind must be finite and at least 0, got -1"),
         (["--payload", "9"], "thrust 28 N can't lift 1.5 kg + payload 9 kg"),
-        (["--flights", "-1"], "--flights must be at least 0, got -1"),
+        (["--flights", "-1"], "--flights must be from 0 to 1,000,000, got -1"),
     ],
 )
 def test_wrong_question_is_one_line_and_exit_code_2(arguments, message, capsys, tmp_path, monkeypatch):
@@ -289,3 +295,94 @@ def test_flights_that_give_up_are_told():
     outcome = np.array(["arrived", "gave up", "crashed"])
     flights = Flights(outcome, none, none, none, np.zeros((3, 3)), np.zeros((3, 1, 3)))
     assert Trial("", flights=flights).lines() == ["flown 3 times in gusts, crashed 1 times, gave up 1 times"]
+
+
+def flown_rows(tmp_path, *arguments):
+    """The table of a page after three flights."""
+    out = tmp_path / "route.html"
+    assert main([*arguments, "--flights", "3", "--out", str(out)]) == 0
+    return rows_of(out.read_text(encoding="utf-8"))
+
+
+def test_rain_and_where_the_wind_comes_from_reach_the_flights(tmp_path):
+    usual = flown_rows(tmp_path)
+    rainy = flown_rows(tmp_path, "--rain", "300")
+    assert rainy["weather"].endswith(", 300 mm/h of rain")
+    assert float(rainy["energy"].split()[0]) > float(usual["energy"].split()[0])
+    turned = flown_rows(tmp_path, "--wind-from", "60")
+    assert turned["weather"] == usual["weather"]
+    assert turned["offsets in these gusts"] != usual["offsets in these gusts"]
+    assert turned["time"] != usual["time"] or turned["energy"] != usual["energy"]
+
+
+def test_the_campus_takes_a_payload(tmp_path):
+    light, heavy = (flown_rows(tmp_path, "--city", "campus", "--payload", load) for load in ("0", "0.3"))
+    assert "with a load of 0.3 kg" in heavy["the UAV"]
+    assert float(heavy["energy"].split()[0]) > 1.1 * float(light["energy"].split()[0])
+
+
+def test_energy_is_in_watt_hours_and_offsets_across_come_before_those_up():
+    offsets = np.zeros((2, 400, 3))
+    offsets[..., 1:] = np.random.default_rng(0).normal(0, (3.0, 0.5), (2, 400, 2))
+    ones = np.ones(2)
+    flights = Flights(np.array(["arrived"] * 2), 30 * ones, 4 * ones, 7200 * ones, np.zeros((2, 3)), offsets)
+    conditions = Conditions(LIGHT_QUADROTOR, Wind((6.0, 0.0)), 10.0, 1.0, 3.5, "")
+    rows = dict(trial_table(Trial("", flights=flights, as_planned=flights), conditions))
+    assert rows["energy"] == "2.00 Wh from the battery, 2% of it"
+    across, up = map(float, re.findall(r"[\d.]+(?= m)", rows["offsets in these gusts"]))
+    assert across == pytest.approx(3.0, abs=0.2)
+    assert up == pytest.approx(0.5, abs=0.05)
+
+
+def test_names_from_a_file_are_text_on_the_page(tmp_path, town):
+    page = page_of(tmp_path, "--city", town(name="<script>alert(1)<script>.geojson".replace("/", "")), "--crs", "local",
+                   "--height", "levels")  # fmt: skip
+    assert "<script>alert(1)" not in page
+    assert "&lt;script&gt;alert(1)" in page
+
+
+def test_ctrl_c_ends_in_one_line_and_leaves_no_page(tmp_path, capsys, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("uavlab.__main__.load_city", interrupted)
+    assert main(["--out", str(tmp_path / "route.html")]) == 130
+    assert capsys.readouterr().err == "uavlab: stopped; no page was written\n"
+    assert not list(tmp_path.iterdir())
+
+
+def test_too_little_memory_is_said_before_and_if_it_runs_out(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("uavlab.__main__.free_memory", lambda: 1e6)
+    assert main(["--out", str(tmp_path / "route.html")]) == 2
+    assert (
+        "a map of 1,000,000 voxels needs about 0.1 GB of memory to plan on, 0.0 GB are free: take a larger --cell"
+        in (capsys.readouterr().err)
+    )
+
+    def too_much(*_):
+        raise MemoryError("8 TB")
+
+    monkeypatch.setattr("uavlab.__main__.load_city", too_much)
+    assert main(["--out", str(tmp_path / "route.html")]) == 2
+    assert "the memory isn't enough (8 TB): take a larger --cell" in capsys.readouterr().err
+
+
+def test_long_work_is_announced(capsys):
+    tell("planning on 300,000,000 voxels", 90.0, 15e9)
+    tell("nothing much", 4.0)
+    assert capsys.readouterr().err == "planning on 300,000,000 voxels: about 90 s, 15.0 GB; Ctrl-C stops it\n"
+    assert free_memory() is None or free_memory() > 1e8
+
+
+def test_an_unwritable_place_is_found_before_the_work(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("uavlab.__main__.load_city", lambda options: pytest.fail("it began to work"))
+    assert main(["--out", str(tmp_path / "no" / "page.html")]) == 2
+    assert "can't write" in capsys.readouterr().err
+
+
+def test_a_key_that_stands_twice_is_refused(tmp_path, capsys):
+    file = tmp_path / "twice.geojson"
+    once = json.dumps({"type": "FeatureCollection", "features": [feature(square(0, 0, 20), height=5)]})
+    file.write_text(once.replace('"height": 5', '"height": 5, "height": 50'))
+    assert main(["--city", str(file), "--crs", "local"]) == 2
+    assert "the key 'height' stands twice in one object" in capsys.readouterr().err

@@ -494,3 +494,10 @@ def test_still_has_tracks_and_a_cross_where_one_crashed(table1, route, flights_o
 def test_flights_that_cannot_be_drawn_are_refused(table1, route, draw, message):
     with pytest.raises(ValueError, match=message):
         draw(table1, route)
+
+
+def test_a_profile_counts_heights_from_level_ground():
+    high = City(np.zeros((20, 10, 10), bool), origin=(0.0, 0.0, 120.0))
+    figure = plot.profile(high, Route([(1, 5, 123.0), (18, 5, 127.0)]))
+    assert figure.axes[0].lines[0].get_ydata() == pytest.approx([3.0, 7.0])
+    assert figure.axes[0].get_ylabel() == "height above the ground [m]"

@@ -341,3 +341,30 @@ def test_names_may_look_like_tex(table1, route):
     page = scene.page(table1, Route(route.points, r"$\foo$"))
     assert r"$\foo$: " in page
     assert scene.show(table1, Route(route.points, r"$\foo$")).still
+
+
+def test_the_goal_s_cone_is_at_the_goal_and_the_ball_at_the_start(table1, route):
+    commands = commands_of(scene.page(table1, route))
+    places = {}
+    for name in ("start", "goal"):
+        matrix = np.array(commands[f"/meshcat/route0/{name}", "set_transform"]["matrix"]).reshape(4, 4, order="F")
+        places[name] = matrix[:3, 3]
+    assert places["start"] == pytest.approx(route.points[0], abs=1e-4)
+    assert places["goal"][:2] == pytest.approx(route.points[-1][:2], abs=1e-4)
+    assert 0 < route.points[-1][2] - places["goal"][2] < 3
+
+
+def test_the_legend_has_each_route_in_the_colour_that_it_is_drawn_in(table1, route):
+    straight = shortcut(route, table1)
+    page = scene.page(table1, route, straight)
+    commands = commands_of(page)
+    for number, name in enumerate((route.planner, straight.planner)):
+        (material,) = commands[f"/meshcat/route{number}/tube", "set_object"]["object"]["materials"]
+        named = re.search(rf'<span style="color:(#\w+)">[^<]*</span> {re.escape(name)}: ', page)[1]
+        assert int(named[1:], 16) == material["color"]
+
+
+def test_a_title_is_text(table1):
+    page = scene.page(table1, title="</title><script>alert(1)</script>")
+    assert "<script>alert(1)" not in page
+    assert "&lt;/title&gt;&lt;script&gt;alert(1)" in page

@@ -6,6 +6,8 @@ REPARE Table 1 and its case of a light load in mild wind; `--city campus` plans 
 """
 
 import argparse
+import errno
+import io
 import os
 import sys
 import time
@@ -18,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from uavlab import __version__
-from uavlab.report import Conditions, Trial, report
+from uavlab.report import Conditions, Trial, grounded_page, report
 
 if TYPE_CHECKING:  # imported late, so that --help answers at once
     from uavlab.city import City
@@ -35,14 +37,41 @@ PLANNERS = {
 }
 
 
+STOPPED = 130
+"""What a shell gives for who was interrupted."""
+
+EFFORT = {"astar": (50, 3e-7), "any-angle": (50, 3e-7), "least-risk": (550, 1e-5)}
+"""Memory [bytes] and time [s] that planning takes for each voxel, roughly."""
+
+READING = 30, 1.0
+"""Memory [bytes] and time [µs] for each byte of a file."""
+
+FLIGHT = 2e-3
+"""Time of a flight of half a minute [s]."""
+
+MOST_FLIGHTS = 1_000_000
+"""In one call of `monte_carlo`."""
+
+LONG = 5.0
+"""What takes more seconds is told before."""
+
+
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command line; 0 when the route arrives, 1 when there is none, 2 for a wrong question."""
+    """Run the command line; 0 when the route arrives, 1 when there is none, 2 for a wrong question, 130 for Ctrl-C."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # not every terminal can print every name
+            stream.reconfigure(errors="replace")
     options = parser().parse_args(joined(sys.argv[1:] if arguments is None else arguments))
     try:
         return run(options)
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, OverflowError) as error:
         print(f"uavlab: {error}", file=sys.stderr)
-        return 2
+    except MemoryError as error:
+        print(f"uavlab: the memory isn't enough ({error}): take a larger --cell, or fewer --flights", file=sys.stderr)
+    except KeyboardInterrupt:
+        print("uavlab: stopped; no page was written", file=sys.stderr)
+        return STOPPED
+    return 2
 
 
 POSITIONS = ("--start", "--goal", "--start-lonlat", "--goal-lonlat")
@@ -154,17 +183,23 @@ def number_or_name(text: str) -> float | str:
 def run(options: argparse.Namespace) -> int:
     """Plan, smooth, fly, draw, write; print where the page is."""
     began = time.perf_counter()
-    if options.flights < 0:
-        raise ValueError(f"--flights must be at least 0, got {options.flights}")
+    if not 0 <= options.flights <= MOST_FLIGHTS:
+        raise ValueError(f"--flights must be from 0 to {MOST_FLIGHTS:,}, got {options.flights:.6g}")
+    if not 0 <= options.detour < np.inf:
+        raise ValueError(f"--detour must be a percentage, finite and at least 0, got {options.detour:g}")
     if Path(options.city).is_file() and options.out.exists() and options.out.samefile(options.city):
         raise ValueError(f"--out {options.out} is the city's own file: choose another")
+    refuse_unwritable(options.out)
     city, risk_map = load_city(options)
     if city.source is not None:
         print(city.source)
     conditions = conditions_of(options, risk_map)
     if conditions.grounded:
         print(f"grounded: {conditions.grounded}")
+        write(options.out, grounded_page(city, conditions))
+        print(f"{time.perf_counter() - began:.1f} s; open {options.out.resolve()}")
         return 1
+    tell_effort(city, planner_of(options, risk_map))
     heights = heights_of(options, risk_map)
     asked = (position_of(options, city, name) for name in ("start", "goal"))
     usual = default_flight(city, conditions.clearance, heights)
@@ -181,9 +216,59 @@ def run(options: argparse.Namespace) -> int:
     return 1 if trial.problem else 0
 
 
+def planner_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> str:
+    """The planner that was asked for, or the usual one."""
+    return options.planner or ("any-angle" if risk_map is None else "least-risk")
+
+
+def tell_effort(city: "City", planner: str) -> None:
+    """Say before what planning takes, if it is long; refuse what there is no memory for."""
+    size, seconds = (city.occupied.size * each for each in EFFORT[planner])
+    free = free_memory()
+    if free is not None and size > free:
+        raise ValueError(
+            f"a map of {city.occupied.size:,} voxels needs about {size / 1e9:.1f} GB of memory to plan on, "
+            f"{free / 1e9:.1f} GB are free: take a larger --cell"
+        )
+    tell(f"planning on {city.occupied.size:,} voxels", seconds, size)
+
+
+def tell(what: str, seconds: float, size: float = 0.0) -> None:
+    """Say what comes and how long it takes, if it is long."""
+    if seconds > LONG:
+        memory = f", {size / 1e9:.1f} GB" if size > 1e8 else ""
+        print(f"{what}: about {seconds:.0f} s{memory}; Ctrl-C stops it", file=sys.stderr, flush=True)
+
+
+def free_memory() -> float | None:
+    """What may be used [bytes], where the system says it."""
+    try:
+        lines = Path("/proc/meminfo").read_text().splitlines()
+        return 1024.0 * next(int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
+    except (OSError, StopIteration, ValueError):
+        return None
+
+
+def refuse_unwritable(path: Path) -> None:
+    """`OSError` before any work if a page can't be written there."""
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        beside = beside_of(path)
+        beside.touch()
+        beside.unlink()
+    except OSError as error:
+        raise OSError(f"can't write {path}: {error.strerror}; choose another file with --out") from error
+
+
+def beside_of(path: Path) -> Path:
+    """Where a page is written before it takes the place of an old one."""
+    return path.with_name(f"{path.name}.{os.getpid()}.part")
+
+
 def write(path: Path, page: str) -> None:
     """Write a page beside its place first, so that an old one isn't lost if that fails."""
-    beside = path.with_name(f"{path.name}.{os.getpid()}.part")
+    beside = beside_of(path)
     try:
         beside.write_text(page, encoding="utf-8")
         beside.replace(path)
@@ -244,7 +329,7 @@ def plan(
     """The route asked for, others to compare it with, and the risk map if there is one."""
     from uavlab.planners import astar, shortcut
 
-    planner = options.planner or ("any-angle" if risk_map is None else "least-risk")
+    planner = planner_of(options, risk_map)
     if planner == "least-risk":
         risk_map = risk_map or assumed_risk(city)
         return by_risk(risk_map, start, goal, {"min_clearance": clearance, **heights}, options.detour), risk_map
@@ -281,8 +366,10 @@ def try_out(
     flight = fly(curve, city, uav, wind, autopilot, rng=seed)
     if flight.outcome == "grounded":
         return trial._replace(problem=f"grounded: {flight.reason}")
+    seconds = 2 * flights * FLIGHT * flight.duration / 30
+    tell(f"flying {flights:,} times, in these gusts and with the offsets planned for", seconds)
     flown, as_planned = (
-        monte_carlo(curve, city, uav, gusts, autopilot, rng=seed, flights=flights)
+        monte_carlo(curve, city, uav, gusts, autopilot, rng=seed, flights=flights, progress=seconds > LONG)
         for gusts in (wind, OffsetProcess(conditions.sigma))
     )
     return trial._replace(flight=flight, flights=flown, as_planned=as_planned)
@@ -306,6 +393,8 @@ def load_city(options: argparse.Namespace) -> tuple["City", "RiskMap | None"]:
         risk_map = reference_campus(cell=5.0 if cell is None else cell)
         city = risk_map.city
     elif Path(name).is_file():
+        size = Path(name).stat().st_size
+        tell(f"reading {name}, {size / 1e6:.0f} MB", READING[1] * size / 1e6, READING[0] * size)
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", ".*city.source tells all")  # its report is printed whole
             city = read_city(name, cell=2.0 if cell is None else cell, **reading)
@@ -330,8 +419,6 @@ def by_risk(
     """The route of least risk within a detour, and beside it the safest of the shortest."""
     from uavlab.planners import least_risk
 
-    if not 0 <= detour_percent < np.inf:
-        raise ValueError(f"--detour must be a percentage, finite and at least 0, got {detour_percent:g}")
     blind = least_risk(risk_map, start, goal, length=1.0, **limits)  # a metre outweighs all risk
     blind = replace(blind, planner="shortest")
     if not blind.reached:

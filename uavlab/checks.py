@@ -14,7 +14,7 @@ NO_NUMBERS = {"U": "text", "S": "text", "c": "complex numbers", "M": "dates", "m
 
 def numbers(name: str, value: npt.ArrayLike) -> np.ndarray:
     """The argument as floats; text, dates and None are refused, even where NumPy would read a number in them."""
-    if np.ma.is_masked(value):
+    if np.ma.is_masked(value) or (isinstance(value, list | tuple) and any(map(np.ma.is_masked, value))):
         raise ValueError(f"{name} has masked values, for which no number stands: fill them, or leave them out")
     try:
         values = np.asarray(value)

@@ -127,7 +127,8 @@ def test_flown_offsets_have_their_mean_deviation_and_correlation(seed, rough):
     sigma, mean = np.array([1.0, 2.0, 0.5]), np.array([0.3, -0.4, 0.1])
     process = OffsetProcess(tuple(sigma), tuple(mean), rough)
     northeast = Route([(20, 20, 50), (140, 180, 50)])
-    flights = monte_carlo(northeast, SKY, UAV, process, EXACT, rng=seed, flights=300, every=0.2, time_step=0.1)
+    step = 0.04 if rough else 0.1
+    flights = monte_carlo(northeast, SKY, UAV, process, EXACT, rng=seed, flights=300, every=0.2, time_step=step)
     along, left, up = np.moveaxis(flights.offsets[:, :195], -1, 0)
     offsets = (np.stack([0.6 * along - 0.8 * left, 0.8 * along + 0.6 * left, up], axis=-1) - mean) / sigma
     for values, expected in [(offsets.mean(axis=1), 0.0)] + [

@@ -461,7 +461,7 @@ WEAK = UAV(**(vars(LIGHT_QUADROTOR) | {"thrust": 20.0}))
         ({"mean_offset": [(1.0, 0.0, 0.0)] * 2}, "mean_offset must be two or three finite numbers"),
         ({"mean_offset": (np.inf, 0)}, "mean_offset must be two or three finite numbers"),
         ({"penalty": -1.0}, "penalty must be finite and at least 0, got -1"),
-        ({"penalty": None}, "penalty must be finite and at least 0, got nan"),
+        ({"penalty": None}, "penalty must be a number .* got None"),
         ({"force_weight": np.nan}, "force_weight must be finite"),
         ({"load_weight": "1"}, "load_weight must be a number"),
         ({"shape": "cube"}, "shape must be 'ball' or 'ring', got 'cube'"),

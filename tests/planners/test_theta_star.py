@@ -160,7 +160,7 @@ def test_where_no_way_leads_it_says_so():
         ({"weight": 0.9}, "weight must be finite and at least 1, got 0.9"),
         ({"weight": np.inf}, "weight must be finite and at least 1"),
         ({"weight": [1.0, 2.0]}, "weight must be one number"),
-        ({"weight": None}, "weight must be finite and at least 1, got nan"),
+        ({"weight": None}, "weight must be a number .* got None"),
         ({"price": np.ones((2, 2, 2))}, r"price must have the city's shape \(20, 20, 20\)"),
         ({"price": -np.ones((20, 20, 20))}, "price must be finite and at least 0 everywhere"),
         ({"min_clearance": -1.0}, "min_clearance must be a distance in metres, at least 0"),

@@ -281,3 +281,17 @@ def test_north_wind_is_no_news(recwarn):
     assert predictor.fitted.ranges["wind_from_deg"][0] > 0
     predictor.predict_class(Weather(forecast_wind=3.0, wind_from_deg=0.0))
     assert not [warning for warning in recwarn if "wind_from_deg" in str(warning.message)]
+
+
+def test_a_file_that_was_changed_is_refused_before_xgboost_sees_it(tmp_path):
+    """The finding: 7 of 195 mutations ended the process inside of XGBoost."""
+    data = make_dataset("paper", 0, count=200, train_count=150)
+    path = tmp_path / "model.json"
+    OffsetPredictor().fit(data.features[data.train], data.offsets[data.train]).save(path)
+    whole = path.read_text()
+    OffsetPredictor.load(path)
+    for old, new in (('"split_indices":[', '"split_indices":[99999999,'), ('"left_children":[', '"left_children":[7,')):
+        assert old in whole
+        path.write_text(whole.replace(old, new, 1))
+        with pytest.raises(ValueError, match=r"no file that OffsetPredictor\.save wrote, or was changed since"):
+            OffsetPredictor.load(path)

@@ -5,7 +5,7 @@ import pytest
 
 from uavlab.planners import least_risk, pareto_front
 from uavlab.risk import CAMPUS_FLIGHT, POPULATION_DENSITY, random_campus, reference_campus
-from uavlab.risk.campus import MIN_HEIGHT
+from uavlab.risk.campus import BELT, MIN_HEIGHT, ROAD_WIDTH, ROADS
 from uavlab.risk.layers import column_centers
 
 CELLS = [5.0, 2.0]
@@ -177,3 +177,23 @@ def test_risk_map_says_what_it_is():
 def test_wrong_questions_are_refused_by_name(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_beside_the_roads_runs_a_belt_of_trees_with_five_times_as_many_people_as_on_them(seed):
+    """Shelter of trees, half of the usual density, on a road a tenth; crowds are the same within 10 m."""
+    campus = random_campus(seed, cell=2.5)
+    x, y = np.moveaxis(column_centers(campus.city), -1, 0)
+    away = np.min([np.abs(axis - road) for axis in (x, y) for road in ROADS], axis=0)
+    free = ~campus.city.occupied.any(axis=2)
+    belt, road = free & (away > ROAD_WIDTH / 2) & (away < ROAD_WIDTH / 2 + BELT), free & (away < ROAD_WIDTH / 2)
+    assert (campus.shelter[belt] == 0.5).all()
+    assert (campus.shelter[road] == 0.0).all()
+    square, ratios = x // 10 * 100 + y // 10, []
+    for number in np.unique(square[belt]):
+        one, other = (campus.population_density[kind & (square == number)] for kind in (belt, road))
+        if len(one) and len(other):
+            assert np.ptp(one) < 1e-12
+            ratios.append(one[0] / other[0])
+    assert len(ratios) > 20
+    assert ratios == pytest.approx(np.full(len(ratios), 5.0))

@@ -3,6 +3,8 @@
 Each column gets its own share of cars and no people, so that a rate tells the column.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -23,6 +25,7 @@ from uavlab.risk import (
 )
 from uavlab.risk.drift import STEPS_PER_CELL, landing_rate
 from uavlab.route import Route
+from uavlab.vehicle import RISK_QUADROTOR
 
 EAST = (1, 0, 0)
 
@@ -229,3 +232,19 @@ def test_a_route_that_leaves_the_map_or_has_no_legs():
         flat.integral(Route([(12.5, 7.5, 27.5), (12.5, 15.5, 27.5)]), drift=True)
     assert flat.integral(Route(np.empty((0, 3))), drift=True) == 0
     assert flat.integral(Route([(12.5, 7.5, 27.5)]), drift=True) == 0
+
+
+def test_a_payload_makes_the_blow_harder():
+    """Behind shelter a heavier wreck kills more often, by the energy of mass and payload."""
+    people = RiskMap(City(np.zeros((40, 5, 8), bool), cell=5.0), 0.01, 0.5, uav=RISK_QUADROTOR)
+    loaded = replace(people, uav=RISK_QUADROTOR.loaded(0.7))
+    index = np.array([(3, 2, 5)])
+    light, heavy = (float(landing_rate(each, index, np.array(EAST))[0]) for each in (people, loaded))
+    falls = [each.falls for each in (people, loaded)]
+    row = falls[0].last.size // 2
+    energies = [fall.energy[row, fall.last[row]] for fall in falls]
+    drop = ballistic_fall(40.0, RISK_QUADROTOR)
+    expected = 0.5 * 1.38 * (drop.forward_speed**2 + drop.fall_speed**2)
+    assert energies[0] == pytest.approx(expected, rel=1e-3)
+    assert energies[1] > 1.4 * energies[0]
+    assert heavy > light

@@ -291,7 +291,7 @@ NOWHERE = Route(np.empty((0, 3)), reached=False, reason="walled in")
         (lambda: RiskMap(FLAT, LAYER + np.nan, 0.5), "population_density must be finite and at least 0, got nan"),
         (lambda: RiskMap(FLAT, np.inf, 0.5), "population_density must be finite and at least 0, got inf"),
         (lambda: RiskMap(FLAT, "many", 0.5), "population_density must be a number .* got text, 'many'"),
-        (lambda: RiskMap(FLAT, None, 0.5), "population_density must be finite"),
+        (lambda: RiskMap(FLAT, None, 0.5), "population_density must be a number .* got None"),
         (
             lambda: RiskMap(FLAT, np.zeros((5, 6)), 0.5),
             r"population_density must have the shape of the city's ground plan \(6, 5\) or be one number, "

@@ -330,7 +330,7 @@ def test_weather_joins_what_belongs_to_it():
         ({"radiation": -10}, "radiation must be"),
         ({"radiation": "bright"}, "radiation must be a number or an array of numbers: got text, 'bright'"),
         ({"rain_mm_per_h": "5"}, "rain_mm_per_h must be a number"),  # NumPy would take it for 5.0
-        ({"measured_wind": None}, "measured_wind must be finite and at least 0, got nan"),
+        ({"measured_wind": None}, "measured_wind must be a number .* got None"),
         ({"measured_wind": np.array([3.0, 4.0])}, r"measured_wind must be one number, .* shape \(2,\)"),
         ({"wind_from_deg": 361}, "wind_from_deg must be from 0 to 360 degrees, got 361"),
         ({"wind_from_deg": np.nan}, "wind_from_deg must be from 0 to 360 degrees, got nan"),

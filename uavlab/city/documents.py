@@ -32,14 +32,24 @@ class NoNumberError(ValueError):
     """NaN or Infinity stands in a JSON text."""
 
 
-def read_json(path: Path, objects: Callable[[list[tuple[str, Any]]], Any] | None = None) -> list[dict[str, Any]]:
+def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object; `ValueError` if a key stands twice in it, of which one would silently win."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        seen: set[str] = set()
+        again = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
+        raise ValueError(f"the key {again!r} stands twice in one object: which of the values holds?")
+    return found
+
+
+def read_json(path: Path, objects: Callable[[list[tuple[str, Any]]], Any] = without_repeats) -> list[dict[str, Any]]:
     """The JSON objects in a file: one, or a sequence, one per line or otherwise separated (RFC 8142, RFC 7464).
 
     Parameters
     ----------
     path : Path
         UTF-8 text, with or without a byte order mark.
-    objects : callable, optional
+    objects : callable
         Makes something of the (key, value) pairs of each object, the innermost first, while the file is read: so that
         repeated keys are seen, and a large file becomes arrays before it fills the memory.
 

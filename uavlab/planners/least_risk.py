@@ -268,8 +268,10 @@ def city_lengths(query: Query) -> Query:
 
 def price_per_cell(risk_map: RiskMap, risk: float, length: float, threat: float, drift: bool) -> np.ndarray:
     """Cost per cell of way in each voxel, (1 or 26, nx·ny·nz)."""
-    for name, weight in (("risk", risk), ("length", length), ("threat", threat)):
+    risk, length, threat = (
         checks.not_negative_number(name, weight)
+        for name, weight in (("risk", risk), ("length", length), ("threat", threat))
+    )
     if risk == length == threat == 0:
         raise ValueError("risk, length and threat are all 0: give at least one of them a weight above 0")
     price = base_price(risk_map, 0.0 if drift else risk, length, threat)[None]

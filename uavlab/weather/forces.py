@@ -206,12 +206,8 @@ def lift_margin(
     """
     checks.not_negative("rain", rain)
     checks.at_least_one("safety_factor", safety_factor)
-    rain = np.asarray(rain, dtype=float)
-    return (
-        uav.thrust
-        - safety_factor * uav.weight
-        - (rain if checks.flag("as_printed", as_printed) else safety_factor * rain)
-    )
+    counted = np.asarray(rain, dtype=float) * (1.0 if checks.flag("as_printed", as_printed) else safety_factor)
+    return uav.thrust - safety_factor * uav.weight - counted
 
 
 def reference_wind(
