@@ -17,13 +17,24 @@
 # weathers in which it may fly. ("Eq. 3" is an equation of this notebook, "REPARE Eq. 2" one of the paper's.)
 
 # %%
+import tempfile
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 from ipywidgets import FloatSlider, interact
 
 from uavlab import plot
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
-from uavlab.weather import Weather, air_density, greensboro_weather, reachable_ground_speed, reference_wind
+from uavlab.weather import (
+    Weather,
+    air_density,
+    greensboro_weather,
+    mean_wind,
+    reachable_ground_speed,
+    read_weather,
+    reference_wind,
+)
 
 BLUE, RED, GREEN, ORANGE = "#0072B2", "#D55E00", "#009E73", "#E69F00"
 
@@ -245,6 +256,37 @@ assert np.isclose((10.5 / 6) ** 2, 3.0625)
 # %% [markdown]
 # A gust factor of 1.75 is a factor of 3.06 in force: who leaves gusts out, reckons with a third of what will push.
 #
+# What is "the mean" of a wind that changes all the time? The paper averages what is measured over a time $t_w$, and
+# doesn't say how long that is. It matters. Here is a wind of 6 m/s that rises and falls by 3 m/s every 40 s, measured
+# once a second and averaged over the last $t_w$ by `mean_wind`:
+
+# %%
+# NBVAL_CHECK_OUTPUT
+seconds = np.arange(300.0)
+speeds = 6 + 3 * np.sin(2 * np.pi * seconds / 40)
+for averaging_time in (1, 5, 20, 60, 300):
+    print(f"t_w = {averaging_time:3d} s: V_μS = {mean_wind(speeds, 1.0, averaging_time):.2f} m/s")
+assert abs(mean_wind(speeds, 1.0, 20) - 6) > 1 > abs(mean_wind(speeds, 1.0, 300) - 6)
+
+# %% [markdown]
+# Less than the time that gusts take, and it is a gust that is measured; much more, and the weather has changed.
+#
+# A whole record, from a station or from the internet, is read with its units from a CSV file. Whatever it lacks is
+# said; a row of it is a `Weather`:
+
+# %%
+# NBVAL_CHECK_OUTPUT
+rows = "time,temp [°F],pressure [hPa],wind [km/h],gust [km/h],wind direction [°]\n2026-03-01T13:00,50,1013,18,36,270\n"
+with tempfile.TemporaryDirectory() as folder:
+    file = Path(folder) / "station.csv"
+    file.write_text(rows + "2026-03-01T14:00,52,1012,22,40,280\n", encoding="utf-8")
+    record = read_weather(file)
+noon = record.weather("2026-03-01T13:30")
+print(record)
+print(f"{noon.temperature_c:.1f} °C, from {noon.wind_from_deg:.0f}°: mean {noon.reference_wind.mean:.1f} m/s, "
+      f"gust {noon.reference_wind.gust:.1f} m/s; assumed: {', '.join(record.assumed)}")  # fmt: skip
+
+# %% [markdown]
 # ## The wind triangle: REPARE Eq. 4
 #
 # A course is a direction over ground. What the UAV chooses is its velocity through the air $\mathbf a$, at most

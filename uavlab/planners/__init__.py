@@ -1,7 +1,7 @@
 """Planners: from a city, a start and a goal to a `Route`.
 
-Not arriving is an answer: `reached` is False, and `reason` says why. A question that makes no sense is a `ValueError`; so
-is, for every planner, a start and a goal in one voxel, between which there is nothing to plan.
+Not arriving is an answer: `reached` is False, and `reason` says why. A question that makes no sense is a `ValueError`;
+so is, for every planner, a start and a goal in one voxel, between which there is nothing to plan.
 """
 
 from uavlab.planners.ant_colony import ant_colony
