@@ -9,7 +9,7 @@ from places import EXACT, SKY, beside_wall, standard_errors_apart, straight
 
 from uavlab.city import City
 from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, Wind, crash_rate, fly, monte_carlo
-from uavlab.flight.simulation import setup_of, start_of
+from uavlab.flight.simulation import room, setup_of, start_of
 from uavlab.offsets import collision_probability, offset_paths, safety_domain
 from uavlab.planners import astar, hazard_astar, repare
 from uavlab.resilience import ADVANCED, BASIC, ConditionCheck, Controller, Monitor, safe_distance
@@ -481,3 +481,14 @@ def test_offsets_are_kept_as_often_as_asked_for():
         flights = monte_carlo(straight(50, (5, 5, 5)), city, UAV, SWAY, rng=0, flights=2, every=every)
         assert flights.duration == pytest.approx(10.0, abs=0.021)
         assert abs(flights.offsets.shape[1] - rows) <= 1
+
+
+def test_the_room_that_the_monitor_judges_by_is_the_route_s_not_the_uav_s():
+    """That of the UAV would count its offset twice."""
+    city, route = beside_wall(3.0)
+    setup, _ = setup_of(route, city, UAV, SWAY, EXACT, 0.02)
+    state = start_of(route.points[0])
+    state.position[1] -= 2.0
+    assert room(setup.space, state) == pytest.approx(3.0, abs=1e-9)
+    state.target[1] -= 1.0
+    assert room(setup.space, state) == pytest.approx(2.0, abs=1e-9)

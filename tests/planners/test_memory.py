@@ -307,3 +307,13 @@ def test_no_fly_zones_stay_closed_to_shortcuts_and_curves():
     for made in (shortcut(route, city), smooth(shortcut(route, city), city, RISK_QUADROTOR)):
         index = city.cell_of((made.resample(0.1) if isinstance(made, Route) else made).points)
         assert not city.in_no_fly[tuple(index.T)].any()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_half_that_is_planned_anew_leaves_the_others_their_length(seed):
+    risk_map = random_campus(seed)
+    shortest = least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0).length
+    first = ant_colony(risk_map, *CAMPUS_FLIGHT, rng=seed, budget=200)
+    most = max(first.length, 1.01 * shortest)
+    route = ant_colony(risk_map, *CAMPUS_FLIGHT, rng=seed, budget=2400, splits=5, max_length=most)
+    assert not route.reached or route.length <= most + 1e-6
