@@ -1,5 +1,7 @@
 """`python -m uavlab`, as a person calls it."""
 
+import base64
+import html
 import json
 import re
 import subprocess
@@ -9,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from uavlab import plot
 from uavlab.__main__ import free_memory, main, tell
 from uavlab.flight import Flights, Wind
 from uavlab.report import Conditions, Trial, trial_table
@@ -73,6 +76,7 @@ def test_in_too_much_wind_it_stays_on_the_ground(tmp_path, capsys):
     page = out.read_text(encoding="utf-8")  # no older one seems to be the answer
     assert "<h1>Grounded in Table 1</h1>" in page
     assert rows_of(page)["grounded"].startswith("gusts: 35.0 m/s")
+    assert "inf m" not in page
 
 
 def test_a_route_that_scrapes_a_wall_is_drawn_but_not_flown(tmp_path, capsys):
@@ -386,3 +390,15 @@ def test_a_key_that_stands_twice_is_refused(tmp_path, capsys):
     file.write_text(once.replace('"height": 5', '"height": 5, "height": 50'))
     assert main(["--city", str(file), "--crs", "local"]) == 2
     assert "the key 'height' stands twice in one object" in capsys.readouterr().err
+
+
+def test_the_profile_has_the_colours_of_the_scene(tmp_path):
+    """Flights come after routes in the scene: the shortest route in the first colour, the flown curve in the second."""
+    out = tmp_path / "route.html"
+    assert main(["--city", "campus", "--flights", "2", "--out", str(out)]) == 0
+    page = html.unescape(out.read_text(encoding="utf-8"))
+    named = re.findall(r'<span style="color:(#\w+)">[^<]*</span> ([^:,<]+)', page)
+    svg = base64.b64decode(re.search(r"data:image/svg\+xml;base64,([^\"]+)", page)[1]).decode()
+    entries = re.findall(r"<!-- (.+), [\d.]+ m -->", svg)  # of the legend, in the order of the colours
+    assert [name for _, name in named] == entries == ["shortest", "least risk + B-spline"]
+    assert [color for color, _ in named] == plot.route_colors(2)

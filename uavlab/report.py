@@ -81,9 +81,12 @@ def report(
 
     drawn = routes if trial.curve is None else [trial.curve.route(city.cell), *routes[1:]]
     ball = conditions.clearance if conditions.clearance > 0 else None
+    flights = {} if trial.flight is None else {f"{drawn[0].planner}, flown in these gusts": trial.flight}
+    shown = drawn[1:] if flights else drawn  # the track covers its curve
+    in_colours = [*drawn[1:], drawn[0]] if flights else drawn  # of the scene, where flights come after routes
     picture = io.BytesIO()
     with rc_context({"svg.hashsalt": "uavlab"}):  # same question, same bytes
-        profile = plot.profile(city, *drawn, safe_distance=ball)
+        profile = plot.profile(city, *in_colours, safe_distance=ball)
         profile.savefig(picture, format="svg", metadata={"Date": None})
     drawing = base64.b64encode(picture.getvalue()).decode()
     measured = conditions_table(conditions) + table(city, routes[0], start, goal)
@@ -91,8 +94,6 @@ def report(
         measured += risk_table(risk_map, routes, trial.curve)
     measured += trial_table(trial, conditions)
     rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in measured)
-    flights = {} if trial.flight is None else {f"{drawn[0].planner}, flown in these gusts": trial.flight}
-    shown = drawn[1:] if flights else drawn  # the track covers its curve
     read = "" if city.source is None else f"<h2>What was read</h2>{city.source._repr_html_()}"
     limits = ""
     if trial.limits is not None:
@@ -123,9 +124,12 @@ def conditions_table(conditions: Conditions) -> list[tuple[str, str]]:
     rows = [
         ("the UAV", f"{uav.name}, with a load of {uav.payload:g} kg"),
         ("weather", f"wind of {wind.speed:.1f} m/s, gusts up to {conditions.gust:.1f} m/s{rain}"),
-        ("offsets to be survived", f"{3 * conditions.sigma:.1f} m (σ = {conditions.sigma:.2f} m)"),
-        ("distance to keep", f"{conditions.clearance:g} m"),
     ]
+    if not conditions.grounded:
+        rows += [
+            ("offsets to be survived", f"{3 * conditions.sigma:.1f} m (σ = {conditions.sigma:.2f} m)"),
+            ("distance to keep", f"{conditions.clearance:g} m"),
+        ]
     return [(name, html.escape(value)) for name, value in rows]
 
 
