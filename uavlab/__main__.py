@@ -49,9 +49,6 @@ READING = 30, 1.0
 FLIGHT = 2e-3
 """Time of a flight of half a minute [s]."""
 
-MOST_FLIGHTS = 1_000_000
-"""In one call of `monte_carlo`."""
-
 LONG = 5.0
 """What takes more seconds is told before."""
 
@@ -182,6 +179,8 @@ def number_or_name(text: str) -> float | str:
 
 def run(options: argparse.Namespace) -> int:
     """Plan, smooth, fly, draw, write; print where the page is."""
+    from uavlab.flight.simulation import MOST_FLIGHTS
+
     began = time.perf_counter()
     if not 0 <= options.flights <= MOST_FLIGHTS:
         raise ValueError(f"--flights must be from 0 to {MOST_FLIGHTS:,}, got {options.flights:.6g}")

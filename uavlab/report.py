@@ -105,7 +105,6 @@ def report(
         rows=rows,
         limits=limits,
         read=read,
-        style=STYLE,
         version=__version__,
     )
 
@@ -114,7 +113,7 @@ def grounded_page(city: "City", conditions: Conditions) -> str:
     """The page where nothing flies: so that no older one seems to be the answer."""
     measured = [*conditions_table(conditions), ("grounded", html.escape(conditions.grounded))]
     rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in measured)
-    return GROUNDED.format(title=html.escape(f"Grounded in {city.name}"), rows=rows, style=STYLE, version=__version__)
+    return GROUNDED.format(title=html.escape(f"Grounded in {city.name}"), rows=rows, version=__version__)
 
 
 def conditions_table(conditions: Conditions) -> list[tuple[str, str]]:
@@ -220,33 +219,29 @@ def risk_table(risk_map: "RiskMap", routes: list["Route"], curve: "Curve | None"
     return [(name, html.escape(value)) for name, value in rows]
 
 
-STYLE = """<style>
-body{font:15px/1.5 system-ui,sans-serif;max-width:960px;margin:1em auto;padding:0 1em;color:#222}
-iframe{width:100%;height:560px;border:1px solid #ccc} img{width:100%}
-th{text-align:left;padding-right:2em;font-weight:600;vertical-align:top} td{padding-right:1.5em}
-</style>"""
-
-GROUNDED = """<!DOCTYPE html>
+HEAD = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>
-{style}</head><body>
+<style>
+body{{font:15px/1.5 system-ui,sans-serif;max-width:960px;margin:1em auto;padding:0 1em;color:#222}}
+iframe{{width:100%;height:560px;border:1px solid #ccc}} img{{width:100%}}
+th{{text-align:left;padding-right:2em;font-weight:600;vertical-align:top}} td{{padding-right:1.5em}}
+</style></head><body>
 <h1>{title}</h1>
-<table>{rows}</table>
-<p>uavlab {version}</p>
+"""
+
+FOOT = """<p>uavlab {version}</p>
 </body></html>
 """
 
-PAGE = """<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>
-{style}</head><body>
-<h1>{title}</h1>
-<iframe title="3D scene" srcdoc="{scene}"></iframe>
+GROUNDED = f"""{HEAD}<table>{{rows}}</table>
+{FOOT}"""
+
+PAGE = f"""{HEAD}<iframe title="3D scene" srcdoc="{{scene}}"></iframe>
 <p>Drag to turn, scroll to zoom, right-drag to move.</p>
 <h2>Height and clearance along the route</h2>
-{profile}
+{{profile}}
 <h2>Measured</h2>
-<table>{rows}</table>
-{limits}
-{read}
-<p>uavlab {version}</p>
-</body></html>
-"""
+<table>{{rows}}</table>
+{{limits}}
+{{read}}
+{FOOT}"""

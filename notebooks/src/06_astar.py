@@ -716,10 +716,10 @@ plot.plan(city, shortest, priced, safe)
 #
 # $$ g(n') = g(\text{parent}(n)) + c(\text{parent}(n), n'), \tag{13} $$
 #
-# so that a parent may be any node in sight. To look along a line is dear. The *lazy* variant (Nash, Koenig and Tovey
-# 2010) offers the line as if it were free, and looks only when the neighbour's own turn comes. If something is in the
-# way, the best of the neighbours that were expanded becomes the parent instead. `theta_star` does this, also with a
-# price, and pulls the route taut around its corners at the end.
+# so that a parent may be any node in sight. But looking along lines takes most of the time. The *lazy* variant (Nash,
+# Koenig and Tovey 2010) offers the line as if it were free, and looks only when the neighbour's own turn comes. If
+# something is in the way, the best of the neighbours that were expanded becomes the parent instead. `theta_star` does
+# this, also with a price, and pulls the route taut around its corners at the end.
 
 # %%
 # NBVAL_CHECK_OUTPUT

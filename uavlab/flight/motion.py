@@ -123,7 +123,7 @@ class State(NamedTuple):
 def fly_on(body, air, path, space, state, dt, most, every, rng, log):
     """Fly up to `most` steps: FLYING, ARRIVED, CRASHED, BLOWN_BACK or BATTERY_EMPTY."""
     target_velocity, ahead, back = np.empty(3), np.empty(3), np.empty(3)
-    thrust, stream, drag, velocity, wind = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    thrust, stream, drag, velocity = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for _ in range(most):
         step = state.counts[0]
         pace = body.pace * patience(state)
@@ -163,10 +163,7 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
             state.before[a] = state.position[a]
             state.position[a] += dt * state.velocity[a]
             state.seen_position[a] += dt * state.seen_velocity[a]
-        for a in range(3):
-            wind[a] = air.mean[a] + state.gust[a]
-        state.sums[RAIN] += dt * body.rain * velocity[2]
-        spend(state.sums, dt, thrust, drag, velocity, wind, body.disc, body.profile, body.efficiency)
+        spend(body, air, state, dt, thrust, drag, velocity)
     return FLYING
 
 
@@ -188,25 +185,27 @@ def look(body, state, step, rng):
 
 
 @compiled
-def spend(sums, dt, thrust, drag, velocity, wind, disc, profile_share, efficiency):
+def spend(body, air, state, dt, thrust, drag, velocity):
     """Add up the energy of a step, by the velocity in its middle (3,)."""
     pulled = length(thrust)
     through, speed, dragged, blown = 0.0, 0.0, 0.0, 0.0
     for a in range(3):
-        relative = velocity[a] - wind[a]
+        wind = air.mean[a] + state.gust[a]
+        relative = velocity[a] - wind
         through += thrust[a] * relative / pulled
         speed += relative * relative
         dragged -= drag[a] * relative
-        blown += (thrust[a] + drag[a]) * wind[a]
+        blown += (thrust[a] + drag[a]) * wind
     across = math.sqrt(max(speed - through * through, 0.0))
-    induced, profile, useful = rotor_power(pulled, math.sqrt(pulled / disc), through, across, profile_share)
+    induced, profile, useful = rotor_power(pulled, math.sqrt(pulled / body.disc), through, across, body.profile)
     shaft = induced + profile + useful
-    sums[BATTERY] += dt * max(shaft, 0.0) / efficiency
-    sums[INDUCED] += dt * induced
-    sums[PROFILE] += dt * profile
-    sums[DRAG] += dt * dragged
-    sums[WIND] += dt * blown
-    sums[BRAKED] += dt * max(-shaft, 0.0)
+    state.sums[BATTERY] += dt * max(shaft, 0.0) / body.efficiency
+    state.sums[INDUCED] += dt * induced
+    state.sums[PROFILE] += dt * profile
+    state.sums[DRAG] += dt * dragged
+    state.sums[WIND] += dt * blown
+    state.sums[RAIN] += dt * body.rain * velocity[2]
+    state.sums[BRAKED] += dt * max(-shaft, 0.0)
 
 
 @compiled

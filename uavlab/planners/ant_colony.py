@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
-from uavlab.city.bounds import rounding_of
 from uavlab.compiled import compiled
 from uavlab.planners.grid import BOXES, LENGTHS, blocked_around_node, steps_of
 from uavlab.planners.least_risk import (
@@ -30,6 +29,7 @@ from uavlab.planners.least_risk import (
     edge,
     finished,
     flyable_endpoints,
+    in_cells,
     price_per_cell,
     priced_by,
     query_of,
@@ -162,7 +162,8 @@ def ant_colony(
     if budget < least:
         raise ValueError(f"budget must be at least {least}, for {ants} ants and {splits} splits, got {budget}")
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
-    longest = checked_length(max_length) / risk_map.city.cell * (1 + rounding_of(risk_map.city))
+    allowed = checked_length(max_length)
+    longest = in_cells(risk_map.city, allowed)
     price = price_per_cell(risk_map, risk, length, threat, drift)
     between = flyable_endpoints(risk_map, start, goal, limits)
     query = query_of(risk_map, price, between.source, between.target, limits)
@@ -217,7 +218,7 @@ def ant_colony(
             reason += "larger max_turn" if longest == np.inf else "larger max_turn or max_length"
         return Route(np.empty((0, 3)), "ant colony", reached=False, reason=reason, cost=np.inf, info=info)
     route = Route(city.center_of(city.index_of(nodes)), "ant colony", cost=total, info=info)
-    return finished(route, between, price, priced_by(risk, threat, drift), max_length)
+    return finished(route, between, price, priced_by(risk, threat, drift), allowed)
 
 
 def checked_habits(

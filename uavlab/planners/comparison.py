@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.planners.least_risk import least_risk
-from uavlab.planners.swarm import refine
+from uavlab.planners.swarm import check_refinement, refine
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap
 from uavlab.route import Route
 from uavlab.statistics import over_maps, share_over_maps
@@ -189,16 +189,21 @@ def compare_planners(
         raise ValueError("planners, maps and seeds must each have at least one")
     if len(set(seeds)) < len(seeds):  # the same run twice would narrow an interval
         raise ValueError(f"seeds must all be different, got {seeds}")
-    checks.number("refinement", refinement)
-    if not 0 <= refinement < 1:
-        raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
+    check_refinement(refinement)
     exact = [least_risk(risk_map, start, goal) for risk_map in maps]
     for number, route in enumerate(exact):
         if not route.reached:
             raise ValueError(f"maps must have a route from start to goal, maps[{number}] has none: {route.reason}")
     cases = [
-        {"planner": planner, "risk_map": risk_map, "start": start, "goal": goal, "budget": budget, "rng": seed}
-        | {"refinement": refinement}
+        {
+            "planner": planner,
+            "risk_map": risk_map,
+            "start": start,
+            "goal": goal,
+            "budget": budget,
+            "rng": seed,
+            "refinement": refinement,
+        }
         for planner in planners.values()
         for risk_map in maps
         for seed in seeds

@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab.checks import frozen
-from uavlab.city.bounds import height_limits, rounding_of, slack_of
+from uavlab.city.bounds import height_limits, slack_of
 from uavlab.city.segments import Runs, least_to_expect, segment_clearance
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
-from uavlab.planners.least_risk import Limits, base_price, priced_by
+from uavlab.planners.least_risk import Limits, base_price, in_cells, priced_by
 from uavlab.planners.question import Ends
 from uavlab.risk import RiskMap
 from uavlab.risk.drift import NO_FALLS, Falls, rate_ahead
@@ -56,11 +56,10 @@ def sky_of(risk_map: RiskMap, price: np.ndarray, limits: Limits, risk_ahead: flo
     heights = height_limits(city, limits.min_height, limits.max_height, limits.safe_height)
     keep = max(limits.min_clearance / city.cell - slack_of(city), 0.0)
     clearance = city.clearance / city.cell if keep > 0 else np.empty((0, 0, 0))
-    longest = max_length / city.cell * (1 + rounding_of(city)) + SLACK
     return Sky(
         price, risk_map.falls if risk_ahead > 0 else NO_FALLS, risk_ahead,
         city.blocked(), *heights, city.runs, frozen(clearance), keep,
-        limits.max_turn, limits.max_pitch, longest,
+        limits.max_turn, limits.max_pitch, in_cells(city, max_length) + SLACK,
     )  # fmt: skip
 
 

@@ -126,7 +126,7 @@ def least_risk(
             nodes, more = shortest_of_cheapest(query, cost)
             expanded += more
     else:
-        longest = allowed / risk_map.city.cell * (1 + rounding_of(risk_map.city))  # of each move
+        longest = in_cells(risk_map.city, allowed)
         routes, expanded = constrained(query, city_lengths(query), np.array([longest]))
         nodes, cost = routes[0] if routes else (np.empty(0, np.int64), np.inf)
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
@@ -137,13 +137,13 @@ def least_risk(
         return Route(np.empty((0, 3)), name, reached=False, reason=reason, cost=np.inf, info=info)
     city = risk_map.city
     route = Route(city.center_of(city.index_of(nodes)), name, cost=cost, info=info)
-    return finished(route, ends, price, priced_by(risk, threat, drift), max_length)
+    return finished(route, ends, price, priced_by(risk, threat, drift), allowed)
 
 
-def finished(route: Route, ends: Ends, price: np.ndarray, priced: str, max_length: float | None = None) -> Route:
+def finished(route: Route, ends: Ends, price: np.ndarray, priced: str, max_length: float) -> Route:
     """The route with take-off and landing, at a price per cell of way (1 or 26, nodes), and what it promises."""
     upwards = price[UPWARDS if len(price) > 1 else 0] / ends.airspace.city.cell
-    return ends.added_to(route, upwards, priced=priced, max_length=np.inf if max_length is None else max_length)
+    return ends.added_to(route, upwards, priced=priced, max_length=max_length)
 
 
 def priced_by(risk: float, threat: float, drift: bool) -> str:
@@ -313,9 +313,14 @@ def checked_length(max_length: float | None) -> float:
     """The greatest length [m], infinite for None."""
     if max_length is None:
         return np.inf
-    checks.number("max_length", max_length)
-    checks.refuse(np.asarray(max_length), np.asarray(max_length) > 0, "max_length must be above 0")
-    return float(max_length)
+    length = checks.number("max_length", max_length)
+    checks.refuse(np.asarray(length), np.asarray(length) > 0, "max_length must be above 0")
+    return length
+
+
+def in_cells(city: City, length: float) -> float:
+    """A greatest length [cells], with room for the rounding of each move."""
+    return length / city.cell * (1 + rounding_of(city))
 
 
 def flyable_endpoints(risk_map: RiskMap, start: npt.ArrayLike, goal: npt.ArrayLike, limits: Limits) -> Ends:

@@ -148,16 +148,12 @@ def waypoint_swarm(
         checks.one_of(name, value, known)
     for name, count, least in (("waypoints", waypoints, 1), ("arcs", arcs, 0), ("budget", budget, 1)):
         checks.whole(name, count, least)
-    checks.number("refinement", refinement)
-    if not 0 <= refinement < 1:
-        raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
+    check_refinement(refinement)
     if initial is not None:
         checks.instance("initial", initial, Route)
-    limits, weights = (
-        checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height),
-        Weights(risk, length, threat, drift),
-    )
-    longest, price = checked_length(max_length), price_per_cell(risk_map, *weights)
+    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
+    weights, longest = Weights(risk, length, threat, drift), checked_length(max_length)
+    price = price_per_cell(risk_map, *weights)
     ends = flyable_endpoints(risk_map, start, goal, limits)
     task = task_of(risk_map, ends, price, weights, limits, curve == "spline", longest)
     space = space_of(task, waypoints, encoding)
@@ -184,7 +180,7 @@ def waypoint_swarm(
     measure.iterations += (before + found.iterations).tolist()
     if last:
         move_finer(measure, space, found, last, rng)
-    route = finished(route_of(measure, risk_map, f"{optimizer} waypoints"), ends, price, weights.priced, max_length)
+    route = finished(route_of(measure, risk_map, f"{optimizer} waypoints"), ends, price, weights.priced, longest)
     if ants and walked.cost < route.cost:
         route = replace(walked, planner=route.planner, info={"control": walked.points})
     info = {
@@ -275,6 +271,12 @@ def refine(
         route, cost = better, better.cost
     route = replace(route, cost=cost, info={**route.info, **info})
     return finished(route, ends, price, weights.priced, longest)
+
+
+def check_refinement(refinement: float) -> None:
+    checks.number("refinement", refinement)
+    if not 0 <= refinement < 1:
+        raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
 
 
 class Space(NamedTuple):

@@ -31,7 +31,6 @@ TAUT_STEPS, TAUT_POINTS = (0.5, 0.25), 12
 """A route is pulled taut by shortcuts over so many points on each side of its corners, so many voxels apart."""
 
 UNSEEN, OPEN, CLOSED = 0, 1, 2
-NOBODY = -1
 
 
 def theta_star(
@@ -54,19 +53,14 @@ def theta_star(
 
     Parameters
     ----------
-    city : City
-    start, goal : (3,) arrays
-        Positions [m]. The route goes from the centre of the start's voxel to the centre of the goal's.
+    city, start, goal, min_clearance, min_height, max_height
+        As for `astar`.
     price : (nx, ny, nz) array, optional
-        Cost of a metre in each voxel, at least 0, as for `astar`; a leg costs the integral along it.
+        As for `astar`; a leg costs the integral along it.
     weight : float
         Of the estimate, at least 1: the more, the fewer nodes are expanded, and the longer the route may get.
     taut : bool
         Pull the route taut at the end, see `TAUT_STEPS`.
-    min_clearance : float
-        Distance to obstacles that no point of the route may fall below [m].
-    min_height, max_height : float
-        Least and greatest height above ground [m], as for `astar`.
 
     Returns
     -------

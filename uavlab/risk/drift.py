@@ -50,7 +50,7 @@ def falls_of(risk_map: "RiskMap") -> Falls:
     city, uav = risk_map.city, risk_map.uav
     pitch = np.radians(np.arange(-90.0, 90.0 + PITCH_STEP / 2, PITCH_STEP))
     depth = city.cell * city.shape[2]
-    motion, enough = fall_motion(uav, None, depth, AIR_DENSITY)
+    motion, enough = fall_motion(uav, uav.cruise_speed, depth, AIR_DENSITY)
     begin = np.zeros((4, len(pitch)))
     begin[2:] = uav.cruise_speed * np.array([np.cos(pitch), -np.sin(pitch)])
 
@@ -84,8 +84,7 @@ NO_FALLS = Falls(
 
 def fall_steps(fall: np.ndarray, depth: float, cell: float) -> np.ndarray:
     """A fall (4, N) at even steps of its way down to a depth (4, S): distance, drop, and their rates."""
-    ground = int(np.argmax(fall[1] >= depth)) + 1  # the first moment below, too: it may land in between
-    fall = fall[:, :ground] if ground > 1 else fall
+    fall = fall[:, : int(np.argmax(fall[1] >= depth)) + 1]  # with the first moment below: it may land in between
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(fall[:2])))])
     steps = np.linspace(0.0, way[-1], 1 + int(np.ceil(way[-1] / cell * STEPS_PER_CELL)))
     return np.array([np.interp(steps, way, values) for values in fall])

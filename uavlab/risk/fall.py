@@ -149,9 +149,8 @@ def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_de
     return solve_ivp(motion, (0.0, enough), begin, events=(landing, apex), dense_output=True, rtol=1e-9, atol=1e-9)
 
 
-def fall_motion(uav: UAV, speed: float | None, depth: float, air_density: float) -> tuple[Any, float]:
+def fall_motion(uav: UAV, speed: float, depth: float, air_density: float) -> tuple[Any, float]:
     """The equation of N falls, states (4·N,) of distances, drops and their rates; and seconds until all are down."""
-    speed = uav.cruise_speed if speed is None else speed
     fastest = terminal_speed(uav, air_density=air_density)
     drag = GRAVITY / fastest**2
 
