@@ -582,10 +582,10 @@ assert np.median(claims["2 voxels"][1]) < np.median(claims["1 voxel"][1]) < np.m
 printed = partial(waypoint_swarm, as_printed=True, refinement=0.0)
 as_printed = {
     "PSO-BAS": printed,
-    "PSO-BAS, all 21": partial(printed, block=21),
     "PSO": partial(printed, optimizer="pso"),
     "PSO-ACO": partial(printed, optimizer="pso_aco"),
     "ACO": partial(ant_colony, as_printed=True),
+    "PSO-BAS, all 21": partial(printed, block=21),
 }
 paper = run(as_printed, campuses, seeds=range(3))
 print(paper.table().round(1).drop(columns="seconds"))
@@ -909,7 +909,7 @@ print("samples at a quarter of a voxel claim", f"{np.median(claims['1/4 voxel'][
 # | | (nothing on evaluations) | an iteration of PSO-BAS costs four of PSO |
 # | Figs 9, 10 | least risk of all | printed: before ACO and PSO in all runs [74, 100], PSO-ACO in 33 % [17, 53] |
 # | | | ours, all refined: before PSO in 72 % [62, 82], PSO-ACO 37 % [28, 45], ACO 35 % [22, 50] |
-# | | | ours, none refined: before PSO in 47 % [28, 67]: **no**, only before PSO |
+# | | | ours, none refined: before PSO in 47 % [28, 67]: **no**; before PSO alone, if refined |
 # | Table 4 | −86 % risk, +15 % length | reference campus −87 %, +5 %; random ones: 3 of 11: **possible, not typical** |
 # | | 8.75·10⁻⁷ | 23.8 cells over industry: no route that long has so little |
 # | (not said) | start; how curves are measured | no arcs: 91 % instead of 1.6; samples at ¼ voxel claim −5 % |
