@@ -179,8 +179,9 @@ for name, flights in flown.items():
 assert flown["shortest route, this wind"].crashed.mean() > 0.5
 assert not flown["safe curve, this wind"].crashed.any()
 assert crash_rate(flown["safe curve, offsets of 1 m"]).per_thousand < 30
-crash = fly(shortest, city, uav, wind, rng=1)
-arrival = fly(curve, city, uav, wind, rng=1)
+crash = fly(shortest, city, uav, wind, rng=2)
+arrival = fly(curve, city, uav, wind, rng=2)
+assert (crash.outcome, arrival.outcome) == ("crashed", "arrived")
 scene.show(city, flights={"safe curve": arrival, "shortest route": crash})
 
 # %% [markdown]
