@@ -240,7 +240,7 @@ def test_layers_show_people_shelter_and_cars_with_units():
 def test_front_draws_length_against_risk():
     campus = reference_campus()
     routes = pareto_front(campus, *CAMPUS_FLIGHT, lengths=4)
-    shortest = least_risk(campus, *CAMPUS_FLIGHT, risk=0, length=1)
+    shortest = least_risk(campus, *CAMPUS_FLIGHT, risk_weight=0, length_weight=1)
     axes = plot.front(routes, shortest).axes[0]
     assert np.allclose(axes.lines[0].get_xydata(), [(route.length, route.cost) for route in routes])
     assert axes.get_xlabel() == "length [m]"
@@ -249,7 +249,7 @@ def test_front_draws_length_against_risk():
 
 def test_front_without_a_route_is_refused_with_its_reason_and_no_other_route_is_left_out():
     campus = reference_campus()
-    shortest = least_risk(campus, *CAMPUS_FLIGHT, risk=0, length=1)
+    shortest = least_risk(campus, *CAMPUS_FLIGHT, risk_weight=0, length_weight=1)
     none = least_risk(campus, *CAMPUS_FLIGHT, max_length=100.0)
     for routes, message in (([], "it is empty"), ([none], "max_length is 100 m"), (shortest, "a list.* got Route")):
         with pytest.raises(ValueError, match=f"routes must .*{message}"):

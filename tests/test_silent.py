@@ -57,7 +57,7 @@ SCALED = {
     "hazard_price": lambda x: hazard_price(OPEN, x, speed=x, crash_price=x),
     "penalty_zone": lambda x: penalty_zone(OPEN, x, penalty=x),
     "astar": lambda x: astar(OPEN, *ENDS, min_clearance=x / 10, max_height=x).length,
-    "least_risk": lambda x: least_risk(FLAT, *ENDS, length=x, max_length=x * 10).cost,
+    "least_risk": lambda x: least_risk(FLAT, *ENDS, length_weight=x, max_length=x * 10).cost,
     "feasibility": lambda x: feasibility(Curve(ENDS), LIGHT_QUADROTOR, OPEN, speed=x)["tilt"].worst,
     "fly": lambda x: fly(LINE, OPEN, LIGHT_QUADROTOR, Wind(), Autopilot(speed=x / 3), rng=1).duration,
 }

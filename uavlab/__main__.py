@@ -5,6 +5,8 @@ REPARE Table 1 and its case of a light load in mild wind; `--city campus` plans 
 3D scene, the profile of height and clearance, and tables of what was measured; it needs neither Jupyter nor a network.
 """
 
+from __future__ import annotations
+
 import argparse
 import errno
 import io
@@ -215,12 +217,12 @@ def run(options: argparse.Namespace) -> int:
     return 1 if trial.problem else 0
 
 
-def planner_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> str:
+def planner_of(options: argparse.Namespace, risk_map: RiskMap | None) -> str:
     """The planner that was asked for, or the usual one."""
     return options.planner or ("any-angle" if risk_map is None else "least-risk")
 
 
-def tell_effort(city: "City", planner: str) -> None:
+def tell_effort(city: City, planner: str) -> None:
     """Say before what planning takes, if it is long; refuse what there is no memory for."""
     size, seconds = (city.occupied.size * each for each in EFFORT[planner])
     free = free_memory()
@@ -276,7 +278,7 @@ def write(path: Path, page: str) -> None:
         raise OSError(f"can't write {path}: {error.strerror}; choose another file with --out") from error
 
 
-def heights_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> dict[str, Any]:
+def heights_of(options: argparse.Namespace, risk_map: RiskMap | None) -> dict[str, Any]:
     """Limits of height above ground, for planners."""
     usual = 0.0 if risk_map is None else risk_map.min_height
     return {
@@ -285,7 +287,7 @@ def heights_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> dict[
     }
 
 
-def position_of(options: argparse.Namespace, city: "City", name: str) -> np.ndarray | None:
+def position_of(options: argparse.Namespace, city: City, name: str) -> np.ndarray | None:
     """A start or a goal that was asked for [m]."""
     lonlat = getattr(options, f"{name}_lonlat")
     if lonlat is None:
@@ -295,7 +297,7 @@ def position_of(options: argparse.Namespace, city: "City", name: str) -> np.ndar
     return point
 
 
-def conditions_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> Conditions:
+def conditions_of(options: argparse.Namespace, risk_map: RiskMap | None) -> Conditions:
     """From weather and load to the offset to be survived, and the distance to keep (REPARE Eqs 3, 5 and 7)."""
     from uavlab.flight import Wind
     from uavlab.resilience import physical_distance
@@ -318,13 +320,13 @@ def conditions_of(options: argparse.Namespace, risk_map: "RiskMap | None") -> Co
 
 def plan(
     options: argparse.Namespace,
-    city: "City",
-    risk_map: "RiskMap | None",
+    city: City,
+    risk_map: RiskMap | None,
     start: np.ndarray,
     goal: np.ndarray,
     clearance: float,
     heights: dict[str, Any],
-) -> tuple[list["Route"], "RiskMap | None"]:
+) -> tuple[list[Route], RiskMap | None]:
     """The route asked for, others to compare it with, and the risk map if there is one."""
     from uavlab.planners import astar, shortcut
 
@@ -337,8 +339,8 @@ def plan(
 
 
 def try_out(
-    route: "Route",
-    city: "City",
+    route: Route,
+    city: City,
     conditions: Conditions,
     heights: dict[str, Any],
     safe_height: float,
@@ -374,7 +376,7 @@ def try_out(
     return trial._replace(flight=flight, flights=flown, as_planned=as_planned)
 
 
-def load_city(options: argparse.Namespace) -> tuple["City", "RiskMap | None"]:
+def load_city(options: argparse.Namespace) -> tuple[City, RiskMap | None]:
     """A city by name, or from a file, and its risk map where it has one."""
     from uavlab.city import read_city, read_no_fly, table1_city
     from uavlab.risk import reference_campus
@@ -405,7 +407,7 @@ def load_city(options: argparse.Namespace) -> tuple["City", "RiskMap | None"]:
     return city, risk_map
 
 
-def assumed_risk(city: "City") -> "RiskMap":
+def assumed_risk(city: City) -> RiskMap:
     """A risk map where nothing is known of the people: as many everywhere, sparse trees beside the buildings."""
     from uavlab.risk import POPULATION_DENSITY, RiskMap, shelter_layer
 
@@ -413,12 +415,12 @@ def assumed_risk(city: "City") -> "RiskMap":
 
 
 def by_risk(
-    risk_map: "RiskMap", start: np.ndarray, goal: np.ndarray, limits: dict[str, Any], detour_percent: float
-) -> list["Route"]:
+    risk_map: RiskMap, start: np.ndarray, goal: np.ndarray, limits: dict[str, Any], detour_percent: float
+) -> list[Route]:
     """The route of least risk within a detour, and beside it the safest of the shortest."""
     from uavlab.planners import least_risk
 
-    blind = least_risk(risk_map, start, goal, length=1.0, **limits)  # a metre outweighs all risk
+    blind = least_risk(risk_map, start, goal, length_weight=1.0, **limits)  # a metre outweighs all risk
     blind = replace(blind, planner="shortest")
     if not blind.reached:
         return [blind]
@@ -426,7 +428,7 @@ def by_risk(
     return [least_risk(risk_map, start, goal, max_length=longest, **limits), blind]
 
 
-def default_flight(city: "City", clearance: float, heights: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+def default_flight(city: City, clearance: float, heights: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     """A flight across the map: a known one, else from the south-west to the north-east, amid the buildings.
 
     From the free voxels that are far enough from obstacles and nearest to its ends.

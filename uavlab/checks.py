@@ -1,5 +1,7 @@
 """Checks of arguments that many functions share: each names the argument, its value and the range."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
 
 import numpy as np

@@ -6,6 +6,8 @@ flight. Where no cache folder can be written, the function is translated again i
 one warning.
 """
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable
 from contextlib import suppress

@@ -5,6 +5,8 @@ times the speed of the air through the disc, which holds the climb and the drag 
 own blades. Whatever the flight, that is where the energy goes.
 """
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 

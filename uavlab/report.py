@@ -3,6 +3,8 @@
 The page needs neither Jupyter nor a network.
 """
 
+from __future__ import annotations
+
 import base64
 import html
 import io
@@ -25,8 +27,8 @@ if TYPE_CHECKING:  # imported late, so that --help answers at once
 class Conditions(NamedTuple):
     """Who flies in what, and how far it has to keep from walls."""
 
-    uav: "UAV"
-    wind: "Wind"
+    uav: UAV
+    wind: Wind
     gust: float
     sigma: float
     clearance: float
@@ -38,11 +40,11 @@ class Trial(NamedTuple):
 
     problem: str = ""
     """Why it can't be flown; empty if it can."""
-    curve: "Curve | None" = None
-    limits: "Feasibility | None" = None
-    flight: "Flight | None" = None
-    flights: "Flights | None" = None
-    as_planned: "Flights | None" = None
+    curve: Curve | None = None
+    limits: Feasibility | None = None
+    flight: Flight | None = None
+    flights: Flights | None = None
+    as_planned: Flights | None = None
     """With offsets as large as the distance was chosen for."""
 
     def lines(self) -> list[str]:
@@ -66,13 +68,13 @@ class Trial(NamedTuple):
 
 
 def report(
-    city: "City",
-    routes: list["Route"],
+    city: City,
+    routes: list[Route],
     start: np.ndarray,
     goal: np.ndarray,
     conditions: Conditions,
     trial: Trial,
-    risk_map: "RiskMap | None",
+    risk_map: RiskMap | None,
 ) -> str:
     """The page as HTML: the curve is the answer, or the first route where there is none; others are to compare."""
     from matplotlib import rc_context
@@ -109,7 +111,7 @@ def report(
     )
 
 
-def grounded_page(city: "City", conditions: Conditions) -> str:
+def grounded_page(city: City, conditions: Conditions) -> str:
     """The page where nothing flies: so that no older one seems to be the answer."""
     measured = [*conditions_table(conditions), ("grounded", html.escape(conditions.grounded))]
     rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in measured)
@@ -163,14 +165,14 @@ def trial_table(trial: Trial, conditions: Conditions) -> list[tuple[str, str]]:
     return [(name, html.escape(value)) for name, value in rows]
 
 
-def energy_used(flights: "Flights", uav: "UAV") -> str:
+def energy_used(flights: Flights, uav: UAV) -> str:
     """What flights take from the battery, in watt-hours, and of what it holds."""
     used = flights.energy.mean()
     share = f", {used / uav.battery:.0%} of it" if np.isfinite(uav.battery) else ""
     return f"{used / WATT_HOUR:.2f} Wh from the battery{share}"
 
 
-def table(city: "City", route: "Route", start: np.ndarray, goal: np.ndarray) -> list[tuple[str, str]]:
+def table(city: City, route: Route, start: np.ndarray, goal: np.ndarray) -> list[tuple[str, str]]:
     """What was planned and measured, as name and value."""
     from uavlab.checks import show
 
@@ -194,7 +196,7 @@ def table(city: "City", route: "Route", start: np.ndarray, goal: np.ndarray) -> 
     return [(name, html.escape(value)) for name, value in rows]
 
 
-def on_earth(city: "City", start: np.ndarray, goal: np.ndarray) -> str:
+def on_earth(city: City, start: np.ndarray, goal: np.ndarray) -> str:
     """Longitudes and latitudes of start and goal, where they are known."""
     if city.reference is None:
         return ""
@@ -202,7 +204,7 @@ def on_earth(city: "City", start: np.ndarray, goal: np.ndarray) -> str:
     return f" (longitude, latitude {west:.6f}°, {south:.6f}° to {east:.6f}°, {north:.6f}°)"
 
 
-def risk_table(risk_map: "RiskMap", routes: list["Route"], curve: "Curve | None") -> list[tuple[str, str]]:
+def risk_table(risk_map: RiskMap, routes: list[Route], curve: Curve | None) -> list[tuple[str, str]]:
     """What the routes cost on the risk map, as name and value."""
     people, speed = 1e6 * risk_map.population_density, risk_map.uav.cruise_speed
     rows = [("people on the ground", f"{people.mean():,.0f} per km² on average, at most {people.max():,.0f}")]

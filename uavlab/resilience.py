@@ -5,6 +5,8 @@ to keep from walls. During the flight offsets are observed: one beyond the bound
 it again. A monitor chooses between two controllers: the basic one is quick, the advanced one safe.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from typing import NamedTuple
 

@@ -1,5 +1,7 @@
 """A route and what can be measured on it: length, angles, and how near it comes to the buildings."""
 
+from __future__ import annotations
+
 import csv
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -46,7 +48,8 @@ class Route:
     cost : float
         What the planner minimised, in the planner's own unit; infinite when it didn't arrive.
     info : dict
-        What the planner noted: `expanded`, `elapsed` [s], histories when asked for.
+        What the planner noted. Of every planner: `elapsed`, the time from the call to the answer [s], and `expanded`,
+        how much it looked at: nodes that were expanded, steps along a force, ways of ants, curves of a swarm.
     takeoff, landing : int
         How many of its first and last legs are vertical take-off and landing, below the planner's `min_height`.
     min_clearance, min_height, max_height, safe_height : float
@@ -91,13 +94,18 @@ class Route:
             raise ValueError("points must be finite: a waypoint is NaN or infinite")
         object.__setattr__(self, "points", points)
 
+    @classmethod
+    def none(cls, planner: str, reason: str, **info: Any) -> Route:
+        """The answer of a planner that found no way, and why."""
+        return cls(np.empty((0, 3)), planner, reached=False, reason=reason, cost=np.inf, info=info)
+
     def __repr__(self) -> str:
         if not self.reached:
             return f"<Route by {self.planner}: not reached, {self.reason}>"
         return f"<Route by {self.planner}: {self.length:.1f} m, {len(self.points)} waypoints>"
 
     @property
-    def en_route(self) -> "Route":
+    def en_route(self) -> Route:
         """The route between take-off and landing; what planners promise of heights and clearance holds there."""
         return replace(self, points=self.points[self.takeoff : len(self.points) - self.landing], takeoff=0, landing=0)
 
@@ -206,7 +214,7 @@ class Route:
             raise ValueError("the route leaves the map, about which nothing is known")
         return city.voxels_along(self.points)
 
-    def resample(self, step: float) -> "Route":
+    def resample(self, step: float) -> Route:
         """The same way with a waypoint at least every `step` metres; all waypoints stay.
 
         Raises

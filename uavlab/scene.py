@@ -6,6 +6,8 @@ time. Each kind of thing is one merged mesh. In a notebook `show` displays the p
 for places that can't run scripts.
 """
 
+from __future__ import annotations
+
 import base64
 import gzip
 import html

@@ -4,6 +4,8 @@ Runs on one map, or flights of one route, resemble each other. Twenty flights of
 flights of a hundred routes, and an interval that doesn't know that is too narrow.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any
 

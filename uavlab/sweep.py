@@ -4,6 +4,8 @@ joblib does the work: where it runs is for the caller to say, `with joblib.paral
 results don't depend on it, because each case brings its own seed.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping
 from numbers import Integral
 from typing import Any

@@ -5,6 +5,8 @@ reserve, is all it has against a gust: a heavy load takes it away twice, by its 
 presets stand beside the data sheets of real aircraft.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields, replace
 from typing import NamedTuple
 
@@ -129,7 +131,7 @@ class UAV:
         """Weight with payload, G_uav + G_s [N]."""
         return (self.mass + self.payload) * GRAVITY
 
-    def loaded(self, payload: float) -> "UAV":
+    def loaded(self, payload: float) -> UAV:
         """The same vehicle with another payload [kg]; a ValueError if the rotors can't lift it."""
         return replace(self, payload=payload)
 

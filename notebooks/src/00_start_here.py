@@ -198,7 +198,7 @@ scene.show(city, flights={"safe curve": arrival, "shortest route": crash})
 # %%
 # NBVAL_CHECK_OUTPUT
 campus = reference_campus()
-across = least_risk(campus, *CAMPUS_FLIGHT, length=1)  # a metre outweighs all risk
+across = least_risk(campus, *CAMPUS_FLIGHT, length_weight=1)  # a metre outweighs all risk
 across = replace(across, planner="safest of the shortest")
 around = least_risk(campus, *CAMPUS_FLIGHT, max_length=1.08 * across.length)  # only the risk counts
 for route in (across, around):

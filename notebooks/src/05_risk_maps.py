@@ -388,7 +388,7 @@ def at_height(height):
 
 # %%
 # NBVAL_CHECK_OUTPUT
-shortest = least_risk(campus, start, goal, risk=0.0, length=1.0)
+shortest = least_risk(campus, start, goal, risk_weight=0.0, length_weight=1.0)
 print("cell   sum over cells   ∫ r ds / Δx   expected deaths per mission")
 deaths = {}
 for cell in (5.0, 2.0, 1.0):
@@ -467,7 +467,7 @@ def named(route, name, risk_map=campus):
 
 def shortest_routes(risk_map):
     """Of all shortest routes: the one of the tie-break, the least risky, and the riskiest."""
-    tie = least_risk(risk_map, start, goal, risk=0.0, length=1.0)
+    tie = least_risk(risk_map, start, goal, risk_weight=0.0, length_weight=1.0)
     over = Overturned(**{field.name: getattr(risk_map, field.name) for field in fields(risk_map)})
     least, worst = (pareto_front(m, start, goal, lengths=[tie.length])[0] for m in (risk_map, over))
     assert least.length == pytest.approx(tie.length) == worst.length
@@ -492,7 +492,9 @@ print("the risk of equally short routes:", *(f"{route.cost:.2e}" for route in (l
 
 # %%
 # NBVAL_CHECK_OUTPUT
-j0 = named(least_risk(campus, start, goal, risk=0.0, length=0.5, threat=0.2), "J0: length and threat")
+j0 = named(
+    least_risk(campus, start, goal, risk_weight=0.0, length_weight=0.5, threat_weight=0.2), "J0: length and threat"
+)
 aware = named(least_risk(campus, start, goal, max_length=1.0743 * tie.length), "aware, at most +7.4 %")
 blind = (tie, least, worst, j0)
 print("route                    length   highest  J_s printed  threat/Δx      C  sum over cells")
@@ -589,7 +591,7 @@ READINGS = ("shortest, tie-break", "shortest, least risky", "shortest, riskiest"
 def cuts_on(risk_map):
     """Cuts of the risk that the exact planner reaches: (two allowances, four readings of "blind")."""
     ways = shortest_routes(risk_map)
-    threatened = least_risk(risk_map, start, goal, risk=0.0, length=0.5, threat=0.2)
+    threatened = least_risk(risk_map, start, goal, risk_weight=0.0, length_weight=0.5, threat_weight=0.2)
     blind = np.array([way.cost for way in ways] + [risk_map.integral(threatened)])
     longest = [share * ways[0].length for share in ALLOWED.values()]
     return np.array([1 - least_risk(risk_map, start, goal, max_length=length).cost / blind for length in longest])
@@ -643,7 +645,7 @@ for seed in range(40):
     risk_map = random_campus(seed)
     ground = (risk_map.shelter == 0) & (risk_map.vehicle_share == 0)
     unsheltered = np.broadcast_to(ground[:, :, None], risk_map.city.shape)
-    way = least_risk(risk_map, start, goal, risk=0.0, length=1.0)
+    way = least_risk(risk_map, start, goal, risk_weight=0.0, length_weight=1.0)
     crossed[seed] = way.integral(risk_map.city, unsheltered)
     way = least_risk(risk_map, start, goal, max_length=ALLOWED["RISK-ACO"] * way.length)
     left_over[seed] = way.integral(risk_map.city, unsheltered)
@@ -859,7 +861,7 @@ plot.layers(town_risk)
 # %%
 # NBVAL_CHECK_OUTPUT
 ends = (-17.5, 12.5, 17.5), (187.5, 122.5, 17.5)
-direct = named(least_risk(town_risk, *ends, risk=0.0, length=1.0), "shortest", town_risk)
+direct = named(least_risk(town_risk, *ends, risk_weight=0.0, length_weight=1.0), "shortest", town_risk)
 around = named(least_risk(town_risk, *ends, max_length=1.15 * direct.length), "at most +15 %", town_risk)
 places = {"roofs": shelter == 0.75, "the park": shelter == 0.5, "the avenue": cars > 0.01}
 over = {}

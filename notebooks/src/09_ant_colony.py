@@ -307,7 +307,7 @@ plot.finished(figure)
 def odds_along(beta, gamma=0.0):
     """Eq. 5 along the shortest route, all scent equal: cells left, share of the likeliest step, effective choices."""
     found, target = [], campus.city.cell_of(goal)
-    cells = campus.city.cell_of(least_risk(campus, start, goal, risk=0.0, length=1.0).points)
+    cells = campus.city.cell_of(least_risk(campus, start, goal, risk_weight=0.0, length_weight=1.0).points)
     for before, at in itertools.pairwise(cells[:-1]):
         logs = []
         for move in itertools.product((-1, 0, 1), repeat=3):
@@ -363,7 +363,7 @@ plot.finished(figure)
 # NBVAL_CHECK_OUTPUT
 mine = ant_colony(campus, start, goal, rng=0, budget=1000, record=True)
 theirs = ant_colony(campus, start, goal, rng=0, budget=1000, record=True, as_printed=True)
-shortest = least_risk(campus, start, goal, risk=0.0, length=1.0).length
+shortest = least_risk(campus, start, goal, risk_weight=0.0, length_weight=1.0).length
 figure, panels = plt.subplots(1, 2, figsize=(10.0, 3.8), dpi=plot.DPI, layout="constrained", sharey=True)
 for axes, (name, route) in zip(panels, {"printed": theirs, "ours": mine}.items(), strict=True):
     tau = route.info["pheromone"][:, campus.flyable]
@@ -450,7 +450,7 @@ kinds = {
     "ours": ant_colony,
     "ours, blind: γ = 0": partial(ant_colony, gamma=0.0),
     "ours, greedy: β = 80": partial(ant_colony, beta=80.0),
-    "printed numbers, ours else": partial(ant_colony, alpha=0.5, beta=80.0, evaporation=0.8, pheromone=(0, 15, 15)),
+    "printed numbers, ours else": partial(ant_colony, alpha=0.5, beta=80.0, evaporation=0.8, min_pheromone=0),
     "printed": partial(ant_colony, as_printed=True),
     "printed, η = 1/d": partial(ant_colony, as_printed=True, height_guided=False),
     "the same, any turn": partial(ant_colony, as_printed=True, height_guided=False, max_turn=math.pi),
@@ -604,12 +604,12 @@ print(f"time of improved over basic on this machine: {np.median(seconds[0]) / np
 #
 # Table 5 is the paper's main result: routes of ants that minimise the risk (4.82·10⁻⁶, 152.39 m) and the length
 # (2.37·10⁻⁵, 141.85 m): −80 % of risk for +7 % of length. In notebook [05](05_risk_maps.ipynb) exact routes of that
-# length reached it on 14 of 40 campuses. Now with ants. `length=1, risk=0` makes them minimise the length. Ours are
-# asked twice: for the least risk, whatever the length, and for $\int r\,ds/\Delta x + \lambda L$ with $\lambda =
-# 2\cdot10^{-7}$ per metre, as a pilot would who can't fly for ever.
+# length reached it on 14 of 40 campuses. Now with ants; `length_weight=1, risk_weight=0` makes them minimise the
+# length. Ours are asked twice: for the least risk, whatever the length, and for $\int r\,ds/\Delta x + \lambda L$ with
+# $\lambda = 2\cdot10^{-7}$ per metre, as a pilot would who can't fly for ever.
 
 # %%
-AIMS = {"least risk": {}, "risk and length": {"length": 2e-7}}
+AIMS = {"least risk": {}, "risk and length": {"length_weight": 2e-7}}
 
 
 def cut_and_detour(number, seed, how):
@@ -618,7 +618,7 @@ def cut_and_detour(number, seed, how):
         plan = partial(least_risk, maps[number], start, goal)
     else:
         plan = partial(ant_colony, maps[number], start, goal, rng=seed, budget=2000, as_printed=how == "printed")
-    blind = plan(risk=0.0, length=1.0)
+    blind = plan(risk_weight=0.0, length_weight=1.0)
     routes = [plan(**aim) for aim in AIMS.values()]
     risks = [maps[number].integral(route) / maps[number].integral(blind) for route in routes]
     return [[1 - risk, route.length / blind.length - 1] for risk, route in zip(risks, routes, strict=True)]
@@ -656,10 +656,10 @@ assert found["printed", "least risk"][0] < 0.6 < 0.65 < found["ours", "risk and 
 # %%
 front = pareto_front(campus, start, goal, lengths=40)
 aims = {
-    "printed, for length": {"as_printed": True, "risk": 0.0, "length": 1.0},
+    "printed, for length": {"as_printed": True, "risk_weight": 0.0, "length_weight": 1.0},
     "printed, for risk": {"as_printed": True},
     "ours, for risk": {},
-    "ours, for risk and length": {"length": 2e-7},
+    "ours, for risk and length": {"length_weight": 2e-7},
 }
 marked = []
 for name, setting in aims.items():

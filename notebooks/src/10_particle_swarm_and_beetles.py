@@ -743,7 +743,7 @@ assert np.median(single[0].gaps) > 2 * np.median(single[1].gaps)
 # `refine` puts control points on the exact optimum, two voxels apart, and moves them one by one while that gains.
 
 # %%
-gains = [optimality_gap(refine(m, exact, rng=0), exact) for m, exact in zip(campuses, tuned.exact, strict=True)]
+gains = [optimality_gap(refine(exact, m, rng=0), exact) for m, exact in zip(campuses, tuned.exact, strict=True)]
 print("gaps of the refined optimum:", ", ".join(f"{gain:+.1%}" for gain in gains))
 assert max(gains) < -0.02
 assert min(gains) > -0.10
@@ -790,10 +790,10 @@ assert better < 0.15
 # %%
 weights = (0.0, 0.15, 1.0, 2.0, 4.0)
 both_ends = {"start": start, "goal": goal, "rng": 1}
-cases = [{"risk_map": m, **both_ends, "risk": 0.0, "length": 1.0} for m in campuses]
+cases = [{"risk_map": m, **both_ends, "risk_weight": 0.0, "length_weight": 1.0} for m in campuses]
 for weight in weights:
     for risk_map, exact in zip(campuses, tuned.exact, strict=True):
-        cases.append({"risk_map": risk_map, **both_ends, "length": weight * exact.cost / exact.length})
+        cases.append({"risk_map": risk_map, **both_ends, "length_weight": weight * exact.cost / exact.length})
 flown = sweep(waypoint_swarm, cases, jobs=2, progress=False)
 shortest, aware = flown[:12], np.array(flown[12:]).reshape(len(weights), 12)
 table4 = {}
@@ -840,7 +840,7 @@ assert 23 < 8.75e-7 / industry < 24.5
 # industry, on a way of 157 m that crosses 31: no campus with this table's 30 000 people per km² has that.
 
 # %%
-refined_optimum = refine(campus, optimum, rng=0)
+refined_optimum = refine(optimum, campus, rng=0)
 shown = {"PSO-BAS, risk and length": aware_route, "PSO-BAS, blind": blind_route, "exact, refined": refined_optimum}
 scene.show(campus.city, *(replace(route, planner=name) for name, route in shown.items()), risk=campus)
 

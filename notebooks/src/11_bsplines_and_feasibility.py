@@ -488,7 +488,7 @@ def deaths_at(curve, speed):
 
 
 candidates = {"exact route, every node": [smoothed]}
-finer = [refine(campus, exact, rng=seed, min_clearance=3.0) for seed in range(3)]
+finer = [refine(exact, campus, rng=seed, min_clearance=3.0) for seed in range(3)]
 candidates["exact, refined"] = [Curve(found.info["control"]) for found in finer]
 for count in (5, 4, 3, 2, 1):
     planned = [
@@ -508,7 +508,7 @@ for name, group in candidates.items():
     able = [feasibility(curve, uav, campus.city).feasible for curve in group]
     middle = np.median(table[name], axis=0)
     print(f"{name:<24} {middle[0]:11.1f} {middle[1]:18.2f} {middle[2]:18.2f} {sum(able):19d} of {len(able)}")
-blind = Curve(least_risk(campus, start, goal, risk=0.0, length=1.0, min_clearance=3.0).points)
+blind = Curve(least_risk(campus, start, goal, risk_weight=0.0, length_weight=1.0, min_clearance=3.0).points)
 print(f"shortest, every node     {greatest_speed(blind, uav):11.1f} {1e6 * campus.integral(blind.route()):18.2f} "
       f"{deaths_at(blind, greatest_speed(blind, uav)):18.2f}")  # fmt: skip
 print(f"exact route at 16 m/s, if it could: {deaths_at(smoothed, 16.0):.2f} deaths per 1e9 flights")

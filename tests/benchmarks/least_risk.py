@@ -20,13 +20,13 @@ from scipy.sparse.csgraph import dijkstra
 
 from uavlab.planners import least_risk, pareto_front
 from uavlab.planners.grid import LENGTHS, MOVES
-from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN
+from uavlab.planners.risk_question import MAX_PITCH, MAX_TURN
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 
 QUESTIONS: dict[str, dict[str, Any]] = {
     "risk": {},
     "risk with drift": {"drift": True},
-    "length": {"risk": 0.0, "length": 1.0},
+    "length": {"risk_weight": 0.0, "length_weight": 1.0},
 }
 
 

@@ -25,7 +25,7 @@ from astar import Voxel, machine, print_table
 from uavlab.optimizers import pso
 from uavlab.planners import ant_colony, least_risk
 from uavlab.planners.ant_colony import ANTS, OURS
-from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN
+from uavlab.planners.risk_question import MAX_PITCH, MAX_TURN
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from uavlab.planners import ant_colony, least_risk
-from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN
+from uavlab.planners.risk_question import MAX_PITCH, MAX_TURN
 from uavlab.risk import CAMPUS_FLIGHT, random_campus
 from uavlab.route import Route
 

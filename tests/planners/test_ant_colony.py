@@ -1,6 +1,5 @@
 """The colony against one that a student would write, against the exact optimum, and against its own words."""
 
-import importlib
 import itertools
 from dataclasses import replace
 
@@ -27,13 +26,18 @@ from test_least_risk import (
 )
 
 from uavlab.city import Building, City
-from uavlab.planners import ant_colony, least_risk
+from uavlab.planners import ant_colony, ants, least_risk
+from uavlab.planners import risk_question as question
+from uavlab.planners.ant_colony import OURS
 from uavlab.planners.grid import MOVES
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 
-module = importlib.import_module("uavlab.planners.ant_colony")  # the package gives the function this name
 
-PRINTED = {"alpha": 0.5, "beta": 80.0, "gamma": 0.0, "evaporation": 0.8, "deposit": 100.0, "pheromone": (0, 15, 15)}
+def pheromone(least, first, most):
+    return {"min_pheromone": least, "initial_pheromone": first, "max_pheromone": most}
+
+
+PRINTED = {"alpha": 0.5, "beta": 80.0, "gamma": 0.0, "evaporation": 0.8, "deposit": 100.0, **pheromone(0, 15, 15)}
 
 
 def campuses():
@@ -151,15 +155,15 @@ def plain_walk(free, price, tau, ends, rng, limits, *, alpha, beta, gamma, heigh
 
 
 def plain_colony(
-    risk_map, ends, rng, limits, weights, *, budget, ants, all_lay, evaporation, deposit, pheromone, **habits
-):
+    risk_map, ends, rng, limits, weights, *, budget, ants, all_lay, evaporation, deposit, min_pheromone, initial_pheromone,
+    max_pheromone, **habits,
+):  # fmt: skip
     """The colony as one reads it: all ants' costs, pheromone after each generation, and the best way."""
-    least, first, most = pheromone
     city, free = risk_map.city, allowed(risk_map, limits["min_clearance"])
     price = prices(risk_map, **weights).reshape(26, *city.shape)
     price = np.maximum(price, 1e-15 * price.max())
     ends = [tuple(city.cell_of(end).tolist()) for end in ends]
-    tau = np.full(city.shape, float(first))
+    tau = np.full(city.shape, float(initial_pheromone))
     costs, levels, best, lowest = [], [tau.copy()], [], np.inf
     while len(costs) < budget:
         laid = []
@@ -174,16 +178,16 @@ def plain_colony(
         for way, amount in laid if all_lay else [(best, deposit)]:
             for voxel in way:
                 tau[voxel] += amount
-        tau = np.clip(tau, least, most)
+        tau = np.clip(tau, min_pheromone, max_pheromone)
         levels.append(tau.copy())
     return np.array(costs), np.array(levels), best
 
 
 HABITS = [
-    ({}, {"alpha": 1.0, "beta": 12.0, "gamma": 2.0, "evaporation": 0.1, "deposit": 1.5, "pheromone": (0.05, 15, 15)}),
+    ({}, {"alpha": 1.0, "beta": 12.0, "gamma": 2.0, "evaporation": 0.1, "deposit": 1.5, **pheromone(0.05, 15, 15)}),
     ({"as_printed": True}, PRINTED),
-    ({}, {"alpha": 2.0, "beta": 3.0, "gamma": 0.5, "evaporation": 0.6, "deposit": 4.0, "pheromone": (1.0, 2.0, 5.0)}),
-    ({}, {"alpha": 0.0, "beta": 0.0, "gamma": 0.0, "evaporation": 0.3, "deposit": 1.0, "pheromone": (0, 1, np.inf)}),
+    ({}, {"alpha": 2.0, "beta": 3.0, "gamma": 0.5, "evaporation": 0.6, "deposit": 4.0, **pheromone(1.0, 2.0, 5.0)}),
+    ({}, {"alpha": 0.0, "beta": 0.0, "gamma": 0.0, "evaporation": 0.3, "deposit": 1.0, **pheromone(0, 1, np.inf)}),
 ]
 
 
@@ -219,22 +223,26 @@ def test_maps_above_have_ants_that_arrive_and_ants_that_get_stuck():
     assert ((shares > 0) & (shares < 1)).sum() >= 2
 
 
-def query_and_look(risk_map, ends, habits):
-    limits = module.checked_limits(risk_map, module.MAX_TURN, module.MAX_PITCH, 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
-    query = module.query_of(risk_map, price, *(code(risk_map, end) for end in ends), limits)
-    return query, module.attraction(query, habits, True)
+def ground_of(risk_map, ends, habits, **changed):
+    """What ants find before any has walked; none counts as long ago as −9."""
+    limits = question.checked_limits(risk_map, question.MAX_TURN, question.MAX_PITCH, 0.0, None, np.inf)
+    price = question.price_per_cell(risk_map, question.Weights())
+    query = question.query_of(risk_map, price, *(code(risk_map, end) for end in ends), limits)
+    nodes = query.blocked.size
+    ground = ants.Ground(
+        query, np.zeros(nodes), -9.0, ants.attraction(query, habits, True), habits.alpha,
+        ants.NO_HEADING, ants.NO_MOVE, np.zeros(nodes, np.int64), np.inf,
+    )  # fmt: skip
+    return ground._replace(**changed)
 
 
-def first_steps(query, trail, faded, look, habits, count):
+def first_steps(ground, count):
     """How often each voxel is the first that an ant goes to, (nodes,)."""
-    rng, seen, nodes = np.random.default_rng(5), np.zeros(trail.size, np.int64), np.empty(200, np.int64)
-    least = module.log(habits.least) - faded
-    steps = np.zeros(trail.size, int)
+    rng, nodes = np.random.default_rng(5), np.empty(200, np.int64)
+    steps = np.zeros(ground.trail.size, int)
+    ground.visited_by[:] = 0
     for ant in range(1, count + 1):
-        module.walk(
-            query, trail, least, look, habits.alpha, module.NO_HEADING, module.NO_MOVE, seen, ant, rng, nodes, np.inf
-        )
+        ants.walk(ground, ant, rng, nodes)
         steps[nodes[1]] += 1
     return steps
 
@@ -245,9 +253,9 @@ def test_first_steps_are_as_frequent_as_the_formula_says():
     city = City(np.zeros((7, 7, 5), bool), 2.0)
     risk_map = RiskMap(city, 10 ** rng.uniform(-2.6, -2, (7, 7)), 0.5, safe_height=0.0)
     ends = city.center_of([(3, 3, 2), (6, 5, 4)])
-    habits = module.Habits(alpha=1.3, beta=2.0, gamma=0.8, evaporation=0.5, deposit=6.0, least=2.0, first=3.0, most=9.0)
-    query, look = query_and_look(risk_map, ends, habits)
+    habits = ants.Habits(alpha=1.3, beta=2.0, gamma=0.8, evaporation=0.5, deposit=6.0, least=2.0, first=3.0, most=9.0)
     trail, faded = np.full(city.occupied.size, np.log(3.0)), 0.0
+    ground = ground_of(risk_map, ends, habits, trail=trail)
     tau = np.full(city.shape, 3.0)
     laid = [(3, 3, 2), (4, 3, 2), (5, 4, 3), (6, 5, 4)]
     for _ in range(2):
@@ -257,16 +265,16 @@ def test_first_steps_are_as_frequent_as_the_formula_says():
         away = np.abs(voxels - (6, 5, 4))
         eta = 1 / (np.sqrt((away**2).sum(axis=1)) + away[:, 2])
         weights = tau[tuple(voxels.T)] ** 1.3 * eta**2.0 * risk_map.rate[tuple(voxels.T)] ** -0.8
-        steps = first_steps(query, trail, faded, look, habits, 20_000)
+        steps = first_steps(ground._replace(least=ants.log(habits.least) - faded), 20_000)
         counted = steps[city.code_of(voxels)]
         assert counted.sum() == 20_000
         assert chisquare(counted, 20_000 * weights / weights.sum()).pvalue > 0.001
         assert chisquare(counted, np.full(24, 20_000 / 24)).pvalue < 1e-9
-        faded = module.lay(trail, faded, habits, [(city.code_of(np.array(laid)), habits.deposit)])
+        faded = ants.lay(trail, faded, habits, [(city.code_of(np.array(laid)), habits.deposit)])
         tau *= 0.5
         tau[tuple(np.array(laid).T)] += 6.0
         tau = np.clip(tau, 2.0, 9.0)
-        assert module.smell(trail, faded, habits).reshape(city.shape) == pytest.approx(tau)
+        assert ants.pheromone_of(trail, faded, habits).reshape(city.shape) == pytest.approx(tau)
 
 
 def test_roulette_draws_in_proportion_even_of_weights_that_are_no_numbers():
@@ -275,23 +283,21 @@ def test_roulette_draws_in_proportion_even_of_weights_that_are_no_numbers():
         rng, counted = np.random.default_rng(2), np.zeros(6, int)
         for _ in range(20_000):
             weights = np.array([-np.inf, *logs, -2000.0]) + shift
-            counted[module.roulette(weights, logs.max() + shift, rng)] += 1
+            counted[ants.roulette(weights, logs.max() + shift, rng)] += 1
         assert counted[0] == counted[-1] == 0
         assert chisquare(counted[1:-1], 20_000 * np.array([0.4, 0.1, 0.3, 0.2])).pvalue > 0.001
 
 
 def test_compiled_and_plain_python_agree():
     risk_map = made_of(np.random.default_rng(0).random((9, 9, 3)) < 0.1)
-    query, look = query_and_look(risk_map, ((1, 1, 1), (17, 17, 5)), module.OURS._replace(beta=1.0))
+    ground = ground_of(risk_map, ((1, 1, 1), (17, 17, 5)), OURS._replace(beta=1.0))
     answers = []
-    for walk in (module.walk, module.walk.py_func):
-        rng, seen, nodes = np.random.default_rng(3), np.zeros(look.size, np.int64), np.full(84, -7)
-        trail = np.zeros(look.size)
+    for walk in (ants.walk, ants.walk.py_func):
+        rng, nodes = np.random.default_rng(3), np.full(84, -7)
+        ground.visited_by[:] = 0
         answers.append([])
-        for mark in range(1, 30):
-            found = walk(
-                query, trail, -9.0, look, 1.0, module.NO_HEADING, module.NO_MOVE, seen, mark, rng, nodes, np.inf
-            )
+        for ant in range(1, 30):
+            found = walk(ground, ant, rng, nodes)
             answers[-1].append((*found, nodes[: found[0]].tolist()))
     assert answers[0] == answers[1]
     assert len({len(answer[3]) for answer in answers[0]}) > 2
@@ -300,11 +306,12 @@ def test_compiled_and_plain_python_agree():
 def test_an_ant_leaves_its_piece_with_a_heading_that_the_next_one_can_follow():
     """East, then north at the next joint: it may arrive going east or north-east, never south-east."""
     risk_map = made_of(np.zeros((9, 9, 3), bool))
-    query, look = query_and_look(risk_map, ((1, 9, 3), (9, 9, 3)), module.OURS)
     north, last = int(np.flatnonzero((MOVES == (0, 1, 0)).all(axis=1))[0]), set()
-    seen, nodes, rng = np.zeros(look.size, np.int64), np.empty(84, np.int64), np.random.default_rng(0)
-    for mark in range(1, 2000):
-        count, _, _ = module.walk(query, 0 * look, -9.0, 0 * look, 1.0, 0, north, seen, mark, rng, nodes, np.inf)
+    ground = ground_of(risk_map, ((1, 9, 3), (9, 9, 3)), OURS, heading=0, leaving_move=north)
+    ground = ground._replace(attraction=0 * ground.attraction)
+    nodes, rng = np.empty(84, np.int64), np.random.default_rng(0)
+    for ant in range(1, 2000):
+        count, _, _ = ants.walk(ground, ant, rng, nodes)
         if count:
             index = risk_map.city.index_of(nodes[:count])
             assert angle_between((1, 0), np.diff(index[:2], axis=0)[0, :2]) <= np.pi / 3
@@ -418,7 +425,7 @@ def test_trails_as_printed_never_come_near_their_upper_limit():
     """With m ants that all lay Q/L, τ ≤ 0.2·15 + mQ/L at first and mQ/(ρL) in the end, and L is at least 141 m."""
     for risk_map in campuses():
         route = ant_colony(risk_map, *CAMPUS_FLIGHT, rng=0, budget=500, as_printed=True, record=True)
-        shortest = least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0).length
+        shortest = least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0).length
         highest = route.info["pheromone"].max(axis=(1, 2, 3))
         most = 10 * 100 / shortest
         assert highest[0] == 15
@@ -490,14 +497,14 @@ def refuses(message, risk_map=BAD, ends=ENDS, **options):
         ({"deposit": 0.0}, "deposit must be finite and above 0, got 0"),
         ({"deposit": -1.0}, "deposit must be finite and above 0, got -1"),
         ({"deposit": "much"}, "deposit must be a number"),
-        ({"pheromone": (1.0, 0.5, 2.0)}, r"pheromone must be \(τ_min, first, τ_max\), in order, .* got \(1.0, 0.5, 2"),
-        ({"pheromone": (0.0, 3.0, 2.0)}, "pheromone must be .* in order"),
-        ({"pheromone": (-1.0, 1.0, 2.0)}, "pheromone must be .* in order"),
-        ({"pheromone": (0.0, 0.0, 2.0)}, "pheromone must be .* first above 0"),
-        ({"pheromone": (0.0, np.inf, np.inf)}, "pheromone must be"),
-        ({"pheromone": (0.0, np.nan, 1.0)}, "pheromone must be"),
-        ({"pheromone": 15.0}, "pheromone must be"),
-        ({"risk": 0.0}, "risk, length and threat are all 0"),
+        ({"min_pheromone": 1.0, "initial_pheromone": 0.5}, "min_pheromone, .* must be in order, got 1, 0.5, 15"),
+        ({"initial_pheromone": 16.0}, "max_pheromone must be in order, got 0.05, 16, 15"),
+        ({"min_pheromone": -1.0}, "min_pheromone must be finite and at least 0"),
+        ({"initial_pheromone": 0.0}, "initial_pheromone must be finite and above 0"),
+        ({"initial_pheromone": np.inf, "max_pheromone": np.inf}, "initial_pheromone must be finite"),
+        ({"initial_pheromone": np.nan}, "initial_pheromone must be finite"),
+        ({"max_pheromone": (15.0, 1.0)}, "max_pheromone must be one number"),
+        ({"risk_weight": 0.0}, "risk_weight, length_weight, threat_weight are all 0"),
         ({"length": -1.0}, "length must be finite and at least 0, got -1"),
         ({"max_turn": 60}, "max_turn must be from 0 to 3.14159 rad"),
         ({"max_pitch": np.nan}, "max_pitch must be from 0 to .* got nan"),
@@ -521,7 +528,17 @@ def test_ends_that_make_no_question_are_refused():
 
 
 def test_pheromone_may_be_without_limits():
-    route = ant_colony(BAD, *ENDS, rng=0, budget=200, pheromone=(0.0, 1.0, np.inf), deposit=50.0, record=True)
+    route = ant_colony(
+        BAD,
+        *ENDS,
+        rng=0,
+        budget=200,
+        min_pheromone=0.0,
+        initial_pheromone=1.0,
+        max_pheromone=np.inf,
+        deposit=50.0,
+        record=True,
+    )
     assert route.reached
     left = 0.9**20
     assert route.info["pheromone"][-1].max() == pytest.approx(500 * (1 - left) + left)  # at the start, towards Q/ρ

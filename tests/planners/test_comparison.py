@@ -365,7 +365,7 @@ def test_all_are_refined_alike_with_a_share_of_the_budget(raced):
     walked = ant_colony(maps[0], *CAMPUS_FLIGHT, rng=2, budget=240)
     least = refined.exact[0].cost
     assert refined.histories[0, 0, 2, 239] == pytest.approx(walked.cost / least - 1)
-    alone = refine(maps[0], walked, rng=2, budget=160)
+    alone = refine(walked, maps[0], rng=2, budget=160)
     assert refined.gaps[0, 0, 2] == pytest.approx(alone.cost / least - 1)
     assert (refined.gaps[0] < refined.histories[0, ..., 239]).mean() > 0.8
     assert (refined.gaps[0] < -1e-9).any()  # off the grid it may be below the grid's best

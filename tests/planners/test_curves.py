@@ -7,14 +7,14 @@ from uavlab.checks import frozen
 from uavlab.city import City
 from uavlab.city.segments import runs_of
 from uavlab.planners.curves import PER_SEGMENT, SLACK, Measure, Sky, Task, Weights, breaches, costs_of, task_of
-from uavlab.planners.least_risk import MAX_PITCH, MAX_TURN, checked_limits, flyable_endpoints, price_per_cell
+from uavlab.planners.risk_question import MAX_PITCH, MAX_TURN, checked_limits, flyable_endpoints, price_per_cell
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 from uavlab.risk.drift import NO_FALLS, landing_rate
 from uavlab.route import Route
 from uavlab.spline import cubic_bspline
 
 ANY = {"max_turn": np.pi, "max_pitch": np.pi / 2}
-RISK = Weights(1.0, 0.0, 0.0, False)
+RISK = Weights()
 
 
 def sky_over(
@@ -163,7 +163,7 @@ def campus_task(spline=True, **limits):
 def task_for(risk_map, start, goal, spline=True, **limits):
     every = {"max_turn": MAX_TURN, "max_pitch": MAX_PITCH, "min_clearance": 0.0, "min_height": None}
     limits = checked_limits(risk_map, **(every | {"max_height": np.inf} | limits))
-    price = price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
+    price = price_per_cell(risk_map, Weights())
     return task_of(risk_map, flyable_endpoints(risk_map, start, goal, limits), price, RISK, limits, spline)
 
 
@@ -354,7 +354,7 @@ def test_the_risk_ahead_of_a_leg_is_that_where_its_wreck_lands(seed):
     limits = checked_limits(risk_map, MAX_TURN, MAX_PITCH, 0.0, 0.0, np.inf)
     ends = flyable_endpoints(risk_map, *CAMPUS_FLIGHT, limits)
     weights = Weights(2.0, 0.0, 0.0, True)
-    sky = task_of(risk_map, ends, price_per_cell(risk_map, *weights), weights, limits, False).sky
+    sky = task_of(risk_map, ends, price_per_cell(risk_map, weights), weights, limits, False).sky
     ours, theirs = [], []
     for line in random_lines(rng, risk_map.city.shape, 60):
         leg = line[:2]

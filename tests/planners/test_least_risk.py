@@ -26,12 +26,12 @@ UNDECIDED = len(COMPASS)  # the heading before the first leg that isn't vertical
 ANY_LIMITS = {"max_turn": np.pi, "max_pitch": np.pi / 2}
 WEIGHTS = [
     {},
-    {"risk": 0.0, "length": 1.0},
-    {"risk": 0.0, "threat": 1.0},
-    {"risk": 0.0, "length": 0.5, "threat": 0.2},
-    {"risk": 1e6, "length": 0.3, "threat": 0.1},
+    {"risk_weight": 0.0, "length_weight": 1.0},
+    {"risk_weight": 0.0, "threat_weight": 1.0},
+    {"risk_weight": 0.0, "length_weight": 0.5, "threat_weight": 0.2},
+    {"risk_weight": 1e6, "length_weight": 0.3, "threat_weight": 0.1},
     {"drift": True},
-    {"risk": 3e6, "length": 0.1, "drift": True},
+    {"risk_weight": 3e6, "length_weight": 0.1, "drift": True},
 ]
 
 
@@ -68,11 +68,11 @@ def ways(flyable, max_turn, max_pitch):
     return tuple(np.concatenate(parts) if parts else np.empty(0, int) for parts in (before, after, moves))
 
 
-def prices(risk_map, *, risk=1.0, length=0.0, threat=0.0, drift=False):
+def prices(risk_map, *, risk_weight=1.0, length_weight=0.0, threat_weight=0.0, drift=False):
     """Cost per cell, one row for each offset (26, nodes)."""
     rate = risk_map.rate_ahead if drift else np.broadcast_to(risk_map.rate, (26, *risk_map.city.shape))
-    threats = risk_map.threat if threat else 0.0
-    return (risk * rate + length * risk_map.city.cell + threat * threats).reshape(26, -1)
+    threats = risk_map.threat if threat_weight else 0.0
+    return (risk_weight * rate + length_weight * risk_map.city.cell + threat_weight * threats).reshape(26, -1)
 
 
 def allowed(risk_map, min_clearance=0.0):
@@ -180,10 +180,10 @@ def keeps_limits(risk_map, route, *, max_turn, max_pitch, min_clearance=0.0):
     )
 
 
-def cost_along(risk_map, route, *, risk=1.0, length=0.0, threat=0.0, drift=False):
+def cost_along(risk_map, route, *, risk_weight=1.0, length_weight=0.0, threat_weight=0.0, drift=False):
     """w_r·∫ r ds/dx + w_l·L + w_s·∫ threat ds/dx, measured on the route."""
     threats = route.integral(risk_map.city, risk_map.threat) / risk_map.city.cell
-    return risk * risk_map.integral(route, drift=drift) + length * route.length + threat * threats
+    return risk_weight * risk_map.integral(route, drift=drift) + length_weight * route.length + threat_weight * threats
 
 
 @pytest.mark.parametrize("seed", range(60))
@@ -254,7 +254,7 @@ def test_looking_back_from_the_goal_saves_four_expansions_of_five():
 def test_second_search_walks_almost_straight_to_the_goal(number):
     risk_map = campus(number)
     limits = module.checked_limits(risk_map, module.MAX_TURN, module.MAX_PITCH, 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
+    price = module.price_per_cell(risk_map, module.Weights())
     query = module.query_of(risk_map, price, *(code(risk_map, end) for end in CAMPUS_FLIGHT), limits)
     _, nodes = module.rest_of_cost(query, query.source, open_list(query.blocked.size))
     route = least_risk(risk_map, *CAMPUS_FLIGHT)
@@ -368,9 +368,11 @@ def test_campus_front_falls_from_the_shortest_route_to_the_safest(number, drift)
     assert len(front) >= 8
     assert (np.diff(lengths) > 1e-6).all()
     assert (np.diff(risks) < 0).all()
-    assert lengths[0] == pytest.approx(least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0).length, rel=1e-9)
+    assert lengths[0] == pytest.approx(
+        least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0).length, rel=1e-9
+    )
     assert risks[-1] == pytest.approx(least_risk(risk_map, *CAMPUS_FLIGHT, drift=drift).cost, rel=1e-9)
-    blind = least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0)
+    blind = least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0)
     assert risks[0] <= risk_map.integral(blind, drift=drift) * (1 + 1e-9)
     for route in front:
         assert keeps_limits(risk_map, route, max_turn=np.pi / 3, max_pitch=np.pi / 3)
@@ -398,7 +400,7 @@ def test_where_nobody_is_at_risk_the_shortest_of_the_ways_of_least_risk_is_taken
     risk_map = RiskMap(City(occupied, cell=5.0), people, 0.2)
     ends = (182.5, 122.5, 32.5), (12.5, 12.5, 17.5)
     route = least_risk(risk_map, *ends)
-    resolved = least_risk(risk_map, *ends, length=1e-6 * risk_map.rate[people > 0].min() / 5)
+    resolved = least_risk(risk_map, *ends, length_weight=1e-6 * risk_map.rate[people > 0].min() / 5)
     assert route.length == pytest.approx(resolved.length, rel=1e-12)
     assert risk_map.integral(route) == pytest.approx(risk_map.integral(resolved), rel=1e-12)
     front = pareto_front(risk_map, *ends, lengths=4)
@@ -413,7 +415,7 @@ def test_over_a_lake_equal_risk_means_the_shorter_way():
     nobody = least_risk(RiskMap(city, 0.0, 0.0), *ends)
     assert nobody.length == pytest.approx(24 * 5 * 2**0.5)
     assert nobody.cost == pytest.approx(0.0, abs=1e-290)
-    crossing, nudged = (least_risk(RiskMap(city, shore, 0.0), *ends, length=length) for length in (0.0, 1e-12))
+    crossing, nudged = (least_risk(RiskMap(city, shore, 0.0), *ends, length_weight=length) for length in (0.0, 1e-12))
     assert crossing.cost == pytest.approx(nudged.cost, rel=1e-4)
     assert crossing.length < 1.02 * nudged.length
 
@@ -645,7 +647,10 @@ def test_ends_that_may_not_be_flown_are_told_why_and_where_one_may(ask):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"risk": 0.0}, "risk, length and threat are all 0: give at least one of them a weight above 0"),
+        (
+            {"risk_weight": 0.0},
+            "risk_weight, length_weight, threat_weight are all 0: give at least one of them a weight above 0",
+        ),
         ({"risk": -1.0}, "risk must be finite and at least 0, got -1"),
         ({"length": np.inf}, "length must be finite and at least 0, got inf"),
         ({"threat": np.nan}, "threat must be finite and at least 0, got nan"),
@@ -746,7 +751,7 @@ def test_of_many_equal_routes_the_same_one_is_taken_in_every_process():
 
 
 def test_same_question_same_route_on_the_campus():
-    for options in ({}, {"drift": True}, {"max_length": 160.0}, {"risk": 0.0, "length": 1.0}):
+    for options in ({}, {"drift": True}, {"max_length": 160.0}, {"risk_weight": 0.0, "length_weight": 1.0}):
         first, second = (least_risk(campus(0), *CAMPUS_FLIGHT, **options) for _ in range(2))
         assert np.array_equal(first.points, second.points)
         assert first.cost == second.cost
@@ -757,7 +762,7 @@ def test_asking_does_not_change_the_map():
     risk_map = campus(0)
     arrays = [risk_map.rate, risk_map.flyable, risk_map.threat, risk_map.rate_ahead, risk_map.city.occupied]
     before = [array.copy() for array in arrays]
-    least_risk(risk_map, *CAMPUS_FLIGHT, length=0.1, threat=0.1, drift=True, min_clearance=3.0)
+    least_risk(risk_map, *CAMPUS_FLIGHT, length_weight=0.1, threat_weight=0.1, drift=True, min_clearance=3.0)
     pareto_front(risk_map, *CAMPUS_FLIGHT, lengths=3)
     assert all(np.array_equal(a, b) for a, b in zip(arrays, before, strict=True))
 
@@ -781,7 +786,7 @@ def test_the_length_of_the_shortest_route_is_enough_wherever_the_map_lies(cell, 
         city = City(rng.random((12, 12, 6)) < 0.1, cell=cell, origin=corner)
         risk_map = RiskMap(city, rng.uniform(0, 0.05, (12, 12)), 0.2, safe_height=0.0)
         ((start, goal),) = city.random_pairs(1, seed, apart=5 * cell)
-        shortest = least_risk(risk_map, start, goal, risk=0.0, length=1.0)
+        shortest = least_risk(risk_map, start, goal, risk_weight=0.0, length_weight=1.0)
         if shortest.reached:
             least = least_risk(risk_map, start, goal, max_length=shortest.length)
             assert least.reached

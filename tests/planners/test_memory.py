@@ -60,9 +60,13 @@ def everyone(city):
         "REPARE": (repare(city, *ENDS, load="dead", disturbance="none", **heights), half, "REPARE's zone"),
         "hazard": (hazard_astar(city, *ENDS, sigma=0.5, **heights), half, "hazard"),
         "least risk": (least_risk(risk_map, *ENDS, **LIMITS), safe, "risk"),
-        "shortest": (least_risk(risk_map, *ENDS, risk=0.0, length=1.0, **LIMITS), safe, ""),
+        "shortest": (least_risk(risk_map, *ENDS, risk_weight=0.0, length_weight=1.0, **LIMITS), safe, ""),
         "drift": (least_risk(risk_map, *ENDS, drift=True, **LIMITS), safe, "risk where the wreck lands"),
-        "J0": (least_risk(risk_map, *ENDS, risk=0.0, length=0.5, threat=0.2, **LIMITS), safe, "threat"),
+        "J0": (
+            least_risk(risk_map, *ENDS, risk_weight=0.0, length_weight=0.5, threat_weight=0.2, **LIMITS),
+            safe,
+            "threat",
+        ),
         "front": (pareto_front(risk_map, *ENDS, lengths=3, **LIMITS)[0], safe, "risk"),
         "ants": (ant_colony(risk_map, *ENDS, **seeded, **LIMITS), safe, "risk"),
         "swarm": (waypoint_swarm(risk_map, *ENDS, **seeded, **LIMITS), safe, "risk"),
@@ -112,7 +116,7 @@ def test_shortcuts_on_a_risk_map_stay_where_it_may_be_flown(seed):
     """The finding: of 20 campuses 6 had 7 to 27 m in voxels with flyable False."""
     risk_map = random_campus(seed)
     city = risk_map.city
-    route = least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0)
+    route = least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0)
     points = shortcut(route, city).resample(0.1).points
     index = tuple(city.cell_of(points).T)
     above = points[:, 2] - city.surface_below[index]
@@ -146,20 +150,20 @@ def test_promises_out_of_range_are_refused():
 def test_refined_routes_keep_the_greatest_length_and_the_risk_ahead(seed):
     """The finding: longer in 6 of 8 (148.0 -> 158.3 m); the true risk with drift 4.8 to 41 times as high."""
     risk_map = random_campus(seed)
-    most = 1.03 * least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0).length
+    most = 1.03 * least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0).length
     bounded = least_risk(risk_map, *CAMPUS_FLIGHT, max_length=most)
     assert bounded.max_length == most
-    refined = refine(risk_map, bounded, rng=seed, budget=600)
+    refined = refine(bounded, risk_map, rng=seed, budget=600)
     assert refined.length <= most + 1e-6
     assert refined.cost <= bounded.cost * (1 + 1e-9)
     assert refined.max_length == most
-    free = refine(risk_map, bounded, rng=seed, budget=600, max_length=np.inf)
+    free = refine(bounded, risk_map, rng=seed, budget=600, max_length=np.inf)
     assert free.max_length == np.inf
     ahead = least_risk(risk_map, *CAMPUS_FLIGHT, drift=True)
-    careful = refine(risk_map, ahead, rng=seed, budget=600)
+    careful = refine(ahead, risk_map, rng=seed, budget=600)
     assert careful.priced == "risk where the wreck lands"
     assert risk_map.integral(careful, drift=True) <= risk_map.integral(ahead, drift=True) * (1 + 1e-9)
-    careless = refine(risk_map, ahead, rng=seed, budget=600, drift=False)
+    careless = refine(ahead, risk_map, rng=seed, budget=600, drift=False)
     assert careless.priced == "risk"
 
 
@@ -167,7 +171,7 @@ def test_swarms_and_ants_keep_the_greatest_length_and_know_the_risk_ahead():
     gained = []
     for seed in range(4):
         risk_map = random_campus(seed)
-        shortest = least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0).length
+        shortest = least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0).length
         for optimizer in ("pso_bas", "pso_aco"):
             route = waypoint_swarm(
                 risk_map, *CAMPUS_FLIGHT, rng=seed, budget=1500, optimizer=optimizer, max_length=1.05 * shortest
@@ -312,7 +316,7 @@ def test_no_fly_zones_stay_closed_to_shortcuts_and_curves():
 @pytest.mark.parametrize("seed", range(6))
 def test_a_half_that_is_planned_anew_leaves_the_others_their_length(seed):
     risk_map = random_campus(seed)
-    shortest = least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0).length
+    shortest = least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0).length
     first = ant_colony(risk_map, *CAMPUS_FLIGHT, rng=seed, budget=200)
     most = max(first.length, 1.01 * shortest)
     route = ant_colony(risk_map, *CAMPUS_FLIGHT, rng=seed, budget=2400, splits=5, max_length=most)

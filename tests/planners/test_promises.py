@@ -35,9 +35,11 @@ def test_swarms_and_refined_routes_keep_the_safe_height_and_the_clearance_at_eac
     assert exact.reached
     routes = [
         exact,
-        refine(risk_map, exact, rng=0, budget=400, min_clearance=CLEAR),
+        refine(exact, risk_map, rng=0, budget=400, min_clearance=CLEAR),
         waypoint_swarm(risk_map, *CAMPUS_FLIGHT, rng=0, budget=800, min_clearance=CLEAR),
-        waypoint_swarm(risk_map, *CAMPUS_FLIGHT, rng=0, budget=800, min_clearance=CLEAR, risk=0.0, length=1.0),
+        waypoint_swarm(
+            risk_map, *CAMPUS_FLIGHT, rng=0, budget=800, min_clearance=CLEAR, risk_weight=0.0, length_weight=1.0
+        ),
     ]
     arrived = [route for route in routes if route.reached]
     assert len(arrived) >= 3
@@ -118,11 +120,11 @@ def planned(town, seed):
                 routes[f"{name} + spline"] = smooth(route, city, SMALL, **limits)
             except ValueError:
                 assert "shortcut" not in name  # the grid may pass a corner at exactly the distance to keep
-    kinds = {"swarm": {}, "short swarm": {"risk": 0.0, "length": 1.0}}
+    kinds = {"swarm": {}, "short swarm": {"risk_weight": 0.0, "length_weight": 1.0}}
     for name, weights in kinds.items():
         routes[name] = waypoint_swarm(risk_map, start, goal, rng=seed, budget=600, **weights, **limits)
     if routes["least risk"].reached:
-        routes["refined"] = refine(risk_map, routes["least risk"], rng=seed, budget=300, **limits)
+        routes["refined"] = refine(routes["least risk"], risk_map, rng=seed, budget=300, **limits)
     return {name: route for name, route in routes.items() if isinstance(route, Curve) or route.reached}
 
 

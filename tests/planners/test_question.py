@@ -147,11 +147,11 @@ PLANNERS = {
     "front": lambda city, *ends, **limits: pareto_front(replace(RISK, city=city), *ends, lengths=3, **limits)[0],
     "ants": lambda city, *ends, **limits: ant_colony(replace(RISK, city=city), *ends, rng=1, budget=400, **limits),
     "swarm": lambda city, *ends, **limits: waypoint_swarm(
-        replace(RISK, city=city), *ends, rng=1, budget=1500, length=1.0, risk=0.0, **limits
+        replace(RISK, city=city), *ends, rng=1, budget=1500, length_weight=1.0, risk_weight=0.0, **limits
     ),
     "refined": lambda city, *ends, **limits: refine(
-        replace(RISK, city=city),
-        least_risk(replace(RISK, city=city), *ends, **limits), rng=1, budget=600, length=1.0, risk=0.0, **limits,
+        least_risk(replace(RISK, city=city), *ends, **limits),
+        replace(RISK, city=city), rng=1, budget=600, length_weight=1.0, risk_weight=0.0, **limits,
     ),
     "shortcut": lambda city, *ends, **limits: shortcut(astar(city, *ends, **limits), city, **limits),
 }  # fmt: skip

@@ -42,9 +42,9 @@ def keeps_limits(risk_map, route, *, max_turn=LIMIT, max_pitch=LIMIT, min_cleara
     )
 
 
-def cost_along(risk_map, route, *, risk=1.0, length=0.0, threat=0.0):
-    threats = route.integral(risk_map.city, risk_map.threat) / risk_map.city.cell if threat else 0.0
-    return risk * risk_map.integral(route) + length * route.length + threat * threats
+def cost_along(risk_map, route, *, risk_weight=1.0, length_weight=0.0, threat_weight=0.0):
+    threats = route.integral(risk_map.city, risk_map.threat) / risk_map.city.cell if threat_weight else 0.0
+    return risk_weight * risk_map.integral(route) + length_weight * route.length + threat_weight * threats
 
 
 CASES = list(itertools.product(OPTIMIZERS, ("points", "planes"), ("spline", "polyline"), (0, 0.3)))
@@ -87,9 +87,9 @@ def test_curve_costs_what_is_measured_keeps_the_limits_and_improves_on_its_arcs(
 @pytest.mark.parametrize(
     "question",
     [
-        {"risk": 0.0, "length": 1.0},
-        {"risk": 0.0, "length": 0.5, "threat": 0.2},
-        {"risk": 1e6, "length": 0.3},
+        {"risk_weight": 0.0, "length_weight": 1.0},
+        {"risk_weight": 0.0, "length_weight": 0.5, "threat_weight": 0.2},
+        {"risk_weight": 1e6, "length_weight": 0.3},
         {"max_turn": np.radians(20), "max_pitch": np.radians(15)},
         {"min_clearance": 4.0},
     ],
@@ -104,7 +104,7 @@ def test_other_costs_and_limits_are_kept_as_well(question):
         route = waypoint_swarm(risk_map, *CAMPUS_FLIGHT, rng=0, budget=1500, **question)
         assert keeps_limits(risk_map, route, **limits)
         assert route.cost == pytest.approx(cost_along(risk_map, route, **weights), rel=1e-9)
-        better = refine(risk_map, route, rng=0, budget=300, **question)
+        better = refine(route, risk_map, rng=0, budget=300, **question)
         assert keeps_limits(risk_map, better, **limits)
         assert better.cost == pytest.approx(cost_along(risk_map, better, **weights), rel=1e-9)
         assert better.cost <= route.cost * (1 + 1e-9)
@@ -127,12 +127,12 @@ def test_same_seed_same_route_and_the_global_state_is_left_alone():
         assert routes[0].points.tolist() == routes[1].points.tolist()
         assert routes[0].info["history"].tolist() == routes[1].info["history"].tolist()
         assert routes[0].points.tolist() != routes[2].points.tolist()
-    routes = [refine(campus(0), exact, rng=rng, budget=200) for rng in (4, np.random.default_rng(4), 5)]
+    routes = [refine(exact, campus(0), rng=rng, budget=200) for rng in (4, np.random.default_rng(4), 5)]
     assert routes[0].points.tolist() == routes[1].points.tolist() != routes[2].points.tolist()
     assert np.array_equal(before, np.random.get_state()[1])  # noqa: NPY002
 
 
-RISK = module.Weights(1.0, 0.0, 0.0, False)
+RISK = module.Weights()
 
 
 def ends_of(risk_map, *ends):
@@ -144,7 +144,7 @@ def near(risk_map, route, waypoints=7):
     """What the curve near a route costs; infinite if it breaks a limit."""
     points = (route.points - risk_map.city.origin) / risk_map.city.cell
     limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
+    price = module.price_per_cell(risk_map, module.Weights())
     task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, RISK, limits, True)
     cost = task.costs(task.nearest(points, waypoints + 2)[None], 8)[0]
     return cost if cost < task.unflyable else np.inf
@@ -155,7 +155,7 @@ def test_a_particle_begins_near_the_initial_route(optimizer):
     """So nothing worse comes out; with arcs the swarm begins there as well."""
     starts = []
     for risk_map in campuses():
-        initial = refine(risk_map, least_risk(risk_map, *CAMPUS_FLIGHT), rng=0, budget=500)
+        initial = refine(least_risk(risk_map, *CAMPUS_FLIGHT), risk_map, rng=0, budget=500)
         starts.append(near(risk_map, initial))
         options = {"optimizer": optimizer, "budget": 60, "refinement": 0, "initial": initial}
         route = waypoint_swarm(risk_map, *CAMPUS_FLIGHT, rng=0, arcs=0, **options)
@@ -201,7 +201,7 @@ def test_points_on_planes_stay_on_the_map_and_reach_its_walls():
     city = City(np.zeros((20, 12, 6), bool), 2.0)
     risk_map = RiskMap(city, 0.01, 0.5, safe_height=0.0)
     limits = module.checked_limits(risk_map, np.pi, np.pi / 2, 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
+    price = module.price_per_cell(risk_map, module.Weights())
     for ends in (
         ((3, 3, 3), (37, 21, 9)),
         ((3, 11, 3), (37, 11, 3)),
@@ -224,7 +224,7 @@ def test_points_on_planes_stay_on_the_map_and_reach_its_walls():
 def test_arcs_are_curves_on_the_map_that_bend_to_both_sides():
     risk_map = campus(0)
     limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, False)
+    price = module.price_per_cell(risk_map, module.Weights())
     task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, RISK, limits, True)
     arcs = module.arcs_between(task, 7, 2000, np.random.default_rng(0))
     assert arcs.shape == (2000, 9, 3)
@@ -295,7 +295,7 @@ def test_refined_optimum_is_cheaper_than_the_optimum_on_the_grid():
     gains = []
     for risk_map in campuses():
         exact = least_risk(risk_map, *CAMPUS_FLIGHT)
-        better = refine(risk_map, exact, rng=0, budget=2000)
+        better = refine(exact, risk_map, rng=0, budget=2000)
         assert better.reached
         assert keeps_limits(risk_map, better)
         assert better.cost == pytest.approx(risk_map.integral(better), rel=1e-9)
@@ -313,14 +313,14 @@ def test_refined_route_is_never_worse_than_the_one_given(seed):
     """Routes of all kinds and budgets of next to nothing; where nothing better is found it is the route itself."""
     risk_map = campus(seed % 3)
     given = [
-        least_risk(risk_map, *CAMPUS_FLIGHT, risk=0.0, length=1.0),
+        least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0),
         ant_colony(risk_map, *CAMPUS_FLIGHT, rng=seed, budget=20),
         waypoint_swarm(risk_map, *CAMPUS_FLIGHT, rng=seed, budget=400),
-        refine(risk_map, least_risk(risk_map, *CAMPUS_FLIGHT), rng=seed),
+        refine(least_risk(risk_map, *CAMPUS_FLIGHT), risk_map, rng=seed),
     ]
     kept = 0
     for route, budget in itertools.product(given, (4, 5, 50)):
-        better = refine(risk_map, route, rng=seed, budget=budget)
+        better = refine(route, risk_map, rng=seed, budget=budget)
         cost = risk_map.integral(route)
         assert better.reached
         assert better.cost == pytest.approx(risk_map.integral(better), rel=1e-9)
@@ -340,7 +340,7 @@ def test_a_long_way_round_is_refined():
     occupied[:35, 20] = True
     risk_map = made_of(occupied)
     exact = least_risk(risk_map, (21, 38, 5), (21, 44, 5))
-    better = refine(risk_map, exact, rng=0, budget=1000)
+    better = refine(exact, risk_map, rng=0, budget=1000)
     assert better.cost < 0.99 * exact.cost
     assert better.info["history"][-1] == pytest.approx(better.cost)
 
@@ -407,7 +407,7 @@ def refuses(message, risk_map=None, ends=CAMPUS_FLIGHT, **options):
         ({"refinement": -0.1}, "refinement must be a share of the budget, from 0 to below 1, got -0.1"),
         ({"refinement": np.nan}, "refinement must be a share"),
         ({"refinement": [0.1]}, "refinement must be one number"),
-        ({"risk": 0.0}, "risk, length and threat are all 0"),
+        ({"risk_weight": 0.0}, "risk_weight, length_weight, threat_weight are all 0"),
         ({"threat": -1.0}, "threat must be finite and at least 0, got -1"),
         ({"max_turn": 60}, "max_turn must be from 0 to 3.14159 rad"),
         ({"max_pitch": np.nan}, "max_pitch must be from 0 to .* got nan"),
@@ -454,7 +454,7 @@ def test_refine_refuses_what_it_cannot_refine():
         ("budget must be a whole number of at least 4, got 3", exact, {"budget": 3}),
         ("lie in the same voxel", Route(np.vstack([exact.points, exact.points[:1]])), {}),
         ("goal .* lies outside of the map", Route(np.vstack([exact.points, [(99, 0, 0)]])), {}),
-        ("risk, length and threat are all 0", exact, {"risk": 0.0}),
+        ("risk_weight, length_weight, threat_weight are all 0", exact, {"risk_weight": 0.0}),
         ("max_turn must be from 0 to", exact, {"max_turn": -1.0}),
         ("start .* is 1.00 m from the nearest obstacle", exact, {"min_clearance": 2.0}),
     ):
@@ -464,4 +464,4 @@ def test_refine_refuses_what_it_cannot_refine():
             occupied[1, 0, 0] = True
             risk_map = made_of(occupied)
         with pytest.raises(ValueError, match=message):
-            refine(risk_map, route, **({"rng": 0} | options))
+            refine(route, risk_map, **({"rng": 0} | options))

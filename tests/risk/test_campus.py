@@ -81,7 +81,7 @@ def test_reference_campus_has_all_kinds_of_shelter():
 def test_on_the_reference_campus_a_little_way_more_saves_most_of_the_risk():
     """RISK-ACO Table 5: 80 % less risk for 7 % more length."""
     campus = reference_campus()
-    blind = least_risk(campus, *CAMPUS_FLIGHT, risk=0, length=1)
+    blind = least_risk(campus, *CAMPUS_FLIGHT, risk_weight=0, length_weight=1)
     lengths = [blind.length * (1 + 1e-9), 1.07 * blind.length]
     safest_of_the_shortest, aware = pareto_front(campus, *CAMPUS_FLIGHT, lengths=lengths)
     assert safest_of_the_shortest.length == pytest.approx(blind.length)

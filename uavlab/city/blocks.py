@@ -1,5 +1,7 @@
 """Footprints with heights on their way to the map: where they lie on Earth, and on what ground they stand."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple

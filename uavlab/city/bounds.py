@@ -4,6 +4,8 @@ A planner on the grid asks only at the centres of voxels. That is enough for its
 bounding box is asked; legs at any angle and curves are asked all along. Compiled code counts in cells.
 """
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 

@@ -5,6 +5,8 @@ lies inside is one matrix product, its faces are what a scene draws, and anythin
 courtyard) is a union of pieces. Footprints of any shape are cut into triangles.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -78,7 +80,7 @@ class Building:
         self.hulls  # noqa: B018  a piece without volume is refused now, not when it is drawn
 
     @classmethod
-    def hull(cls, corners: npt.ArrayLike, *, name: str = "building", color: str = "lightsteelblue") -> "Building":
+    def hull(cls, corners: npt.ArrayLike, *, name: str = "building", color: str = "lightsteelblue") -> Building:
         """The convex hull of corners (M, 3) [m]: a frustum, a spire, any convex body, on the ground or above it."""
         return cls((np.asarray(corners, dtype=float),), name, color)
 
@@ -92,7 +94,7 @@ class Building:
         bottom: float = 0.0,
         name: str = "building",
         color: str = "lightsteelblue",
-    ) -> "Building":
+    ) -> Building:
         """Walls over a convex footprint (M, 2) from `bottom` to `eaves` [m], and a roof up to the ridge points (R, 3).
 
         One ridge point makes a spire, two a gable or hip roof, a smaller polygon a frustum.
@@ -123,7 +125,7 @@ class Building:
         holes: Sequence[npt.ArrayLike] = (),
         name: str = "building",
         color: str = "lightsteelblue",
-    ) -> "Building":
+    ) -> Building:
         """A footprint of any shape, with or without courtyards, between two heights.
 
         Parameters

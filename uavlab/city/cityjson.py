@@ -5,6 +5,8 @@ else that has a height (masts, bridges, trees) keeps its lower surface. The grou
 from the feet of the buildings. What was left out, and why, stands in `City.source`.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -4,6 +4,8 @@ Each object gives its highest level of detail above 0. What can be no obstacle, 
 the ground, and what has no surfaces is noted. A broken object is an error that names it.
 """
 
+from __future__ import annotations
+
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple

@@ -8,6 +8,8 @@ cut gives terrain its highest point in a column, and shares out the pixels of a 
 Coordinates in plan are in cells, counted from the first column of a window; heights are in any unit.
 """
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

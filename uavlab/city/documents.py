@@ -1,5 +1,7 @@
 """What the readers of JSON formats share: one object in a file, or a sequence of them with any separator."""
 
+from __future__ import annotations
+
 import json
 import re
 from collections import Counter

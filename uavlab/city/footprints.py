@@ -1,5 +1,7 @@
 """Polygons of a GeoJSON file as footprints: mended where their rings are broken, sorted into buildings and others."""
 
+from __future__ import annotations
+
 import json
 import re
 from collections.abc import Callable, Mapping, Sequence

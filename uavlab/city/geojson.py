@@ -4,6 +4,8 @@ Where a height stands, how it is written, and in which system the coordinates ar
 be understood is; what has to be assumed is said in `City.source`, and in one warning; what can't be known is asked for.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

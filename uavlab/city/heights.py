@@ -4,6 +4,8 @@ Reading comes first and decides nothing; then one rule each for heights above gr
 underside and a roof of what was read. In doubt both take the lower underside and the higher roof: the safe side.
 """
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence

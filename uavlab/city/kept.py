@@ -1,5 +1,7 @@
 """Results that are kept for a city, no longer than the city itself."""
 
+from __future__ import annotations
+
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from functools import wraps

@@ -1,5 +1,7 @@
 """Heights as people write them: "12.5", "12,5 m", "40 ft", "40'6\\"", "10+", "4;5", "3-4"."""
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Callable, Iterable

@@ -5,6 +5,8 @@ occupied when a building or the ground reaches into it, so that what is free is 
 fly; the border itself is no obstacle. A city without `ground` has the papers' open floor, which is none either.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -126,7 +128,7 @@ class City:
         terrain: Terrain | float | None = None,
         voxels: str = "touched",
         no_fly: Sequence[NoFlyZone] = (),
-    ) -> "City":
+    ) -> City:
         """Rasterise buildings and the ground that they stand on.
 
         Parameters

@@ -3,6 +3,8 @@
 A part overrides the outline that it lies in; what no part covers stays as high as the outline says.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,6 +5,8 @@ the city's own place, at its height (PROJ's topocentric coordinates): true east 
 stay in the vertical system of the file, whatever it is; only their unit is converted.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple

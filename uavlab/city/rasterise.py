@@ -4,6 +4,8 @@ Two rules. "touched": a voxel is occupied when a building reaches into it, so wh
 centre lies in one, the papers' rule, which loses what is thinner than a voxel.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
 from itertools import islice
 from typing import NamedTuple

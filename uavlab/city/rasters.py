@@ -1,5 +1,7 @@
 """Heights of the ground from files: ESRI ASCII grids and GeoTIFF."""
 
+from __future__ import annotations
+
 import re
 import warnings
 from pathlib import Path

@@ -4,6 +4,8 @@ In a city that was read x points to true east, y to true north, both in metres; 
 of the buildings and z = 0 the lowest ground at one. The map begins `margin` metres before them, a layer lower.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable, Sequence
 from inspect import signature

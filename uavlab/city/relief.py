@@ -1,5 +1,7 @@
 """The ground that a city model tells: from its relief, and where that ends from the feet of the buildings."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np

@@ -4,6 +4,8 @@ What is occupied is kept as runs, one above the other in each column of the map.
 looked at, and of those only what can be nearest. Coordinates are in cells, as in `uavlab.city.voxels`.
 """
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 

@@ -6,6 +6,8 @@ down to its own lowest point; a bridge or a mast keeps its lower surface, so tha
 nothing above or below it is a thin slab, and so is what of a wall no column covers: nothing gets lost.
 """
 
+from __future__ import annotations
+
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple

@@ -4,6 +4,8 @@ A city that was read is only as good as its file. What the reader had to decide 
 the names of the first few things that it concerns; a warning says the part that one must know before one flies.
 """
 
+from __future__ import annotations
+
 import html
 import itertools
 import sys

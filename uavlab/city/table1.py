@@ -1,5 +1,7 @@
 """The city of REPARE Table 1: five buildings of different shapes in 100 × 100 × 100 m."""
 
+from __future__ import annotations
+
 from uavlab.city.buildings import Building
 from uavlab.city.model import City
 

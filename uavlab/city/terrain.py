@@ -5,6 +5,8 @@ place, and how high at most in a column of voxels, whatever it came from. Where 
 as far as is known (linear in gaps, nearest beyond), or the map is refused there.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -85,7 +87,7 @@ class Terrain:
     @classmethod
     def from_raster(
         cls, heights: npt.ArrayLike, bounds: Sequence[float], *, crs: Any = None, beyond: str = "refuse"
-    ) -> "Terrain":
+    ) -> Terrain:
         """The ground from a raster of heights; between the centres of its pixels it is even.
 
         Parameters
@@ -121,7 +123,7 @@ class Terrain:
         return cls.from_grid(grid, None if local else system_of(crs), beyond)
 
     @classmethod
-    def from_grid(cls, grid: np.ndarray, system: System | None = None, beyond: str = "refuse") -> "Terrain":
+    def from_grid(cls, grid: np.ndarray, system: System | None = None, beyond: str = "refuse") -> Terrain:
         """The ground from points on a grid (rows, columns, 3), NaN where there is no data: two triangles per mesh."""
         rows, columns = grid.shape[:2]
         number = np.arange(rows * columns).reshape(rows, columns)
@@ -139,7 +141,7 @@ class Terrain:
         return cls(points[known], renumbered[triangles[known[triangles].all(axis=1)]], system, beyond)
 
     @classmethod
-    def from_points(cls, points: npt.ArrayLike) -> "Terrain":
+    def from_points(cls, points: npt.ArrayLike) -> Terrain:
         """The ground through points (N, 3) [m]: linear between them (Delaunay), beyond them as high as the nearest."""
         known = checks.numbers("points", points)
         if known.ndim != 2 or known.shape[1] != 3 or len(known) == 0:
@@ -148,7 +150,7 @@ class Terrain:
         known = known[np.concatenate([[True], (np.diff(known[:, :2], axis=0) != 0).any(axis=1)])]
         return cls(known, triangulated(known), beyond="nearest")
 
-    def placed(self, place: Place | None) -> "Terrain":
+    def placed(self, place: Place | None) -> Terrain:
         """The terrain in metres of a city at a place; as it is when it has no system.
 
         Raises
@@ -167,7 +169,7 @@ class Terrain:
         heights = self.points[:, 2] * self.system.height_factor - place.height
         return replace(self, points=np.column_stack([plan, heights]), system=None)
 
-    def filled(self) -> "Terrain":
+    def filled(self) -> Terrain:
         """The same ground that goes on where it has no data."""
         return replace(self, beyond="nearest")
 

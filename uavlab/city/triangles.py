@@ -3,6 +3,8 @@
 Triangles are given as numbers of points (T, 3), so that large surfaces need no copies.
 """
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

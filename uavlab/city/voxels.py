@@ -3,6 +3,8 @@
 Coordinates here are in cells: voxel (i, j, k) covers [i, i+1) × [j, j+1) × [k, k+1), its centre is (i+½, j+½, k+½).
 """
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

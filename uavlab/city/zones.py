@@ -1,5 +1,7 @@
 """No-fly zones: closed for planners, but nothing that one could hit."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -85,7 +87,7 @@ def checked_zones(no_fly: object) -> tuple[NoFlyZone, ...]:
 
 def read_no_fly(
     path: str | Path,
-    city: "City",
+    city: City,
     *,
     lower: str | float = "lower",
     upper: str | float = "upper",

@@ -1,5 +1,7 @@
 """How a UAV is flown: its controller, what it knows, and who watches."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import NamedTuple
 

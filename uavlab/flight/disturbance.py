@@ -1,5 +1,7 @@
 """What disturbs a flight: wind with gusts, as a force on a body; or offsets themselves, as REPARE has them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,7 +64,7 @@ class Wind:
             raise ValueError("mean is calm, and Dryden gusts take their strength from it: give a wind, or other gusts")
 
     @classmethod
-    def from_weather(cls, weather: Weather, gusts: str = "ou", correlation: float = 1.0) -> "Wind":
+    def from_weather(cls, weather: Weather, gusts: str = "ou", correlation: float = 1.0) -> Wind:
         """The wind of a state of the weather; its strongest gust counts as 3σ above the mean."""
         mean, gust = weather.reference_wind
         return cls(

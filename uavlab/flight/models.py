@@ -1,5 +1,7 @@
 """Two ways to move a UAV through a time step, made ready for compiled code from wind, vehicle and autopilot."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -26,7 +28,7 @@ class Model(NamedTuple):
     def run(self, *arguments: Any) -> int:
         return self.move(*self.parts, *arguments)
 
-    def hand_over(self, state: State, to: "Model") -> None:
+    def hand_over(self, state: State, to: Model) -> None:
         """Offsets without a body are kept in units of σ: they stay what they are in metres."""
         if isinstance(self.parts[0], Spring):
             old, new = self.parts[0], to.parts[0]

@@ -1,5 +1,7 @@
 """The flight itself, step by step: a body with limited thrust that an autopilot pulls along a route, in gusts."""
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 
@@ -89,7 +91,7 @@ class Spring(NamedTuple):
     pace: float
 
 
-class Space(NamedTuple):
+class Obstacles(NamedTuple):
     """The city."""
 
     occupied: np.ndarray
@@ -120,19 +122,19 @@ class State(NamedTuple):
 
 
 @compiled
-def fly_on(body, air, path, space, state, dt, most, every, rng, log):
+def fly_on(body, air, path, space, state, dt, max_steps, log_every, rng, log):
     """Fly up to `most` steps: FLYING, ARRIVED, CRASHED, BLOWN_BACK or BATTERY_EMPTY."""
     target_velocity, ahead, back = np.empty(3), np.empty(3), np.empty(3)
     thrust, stream, drag, velocity = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    for _ in range(most):
+    for _ in range(max_steps):
         step = state.counts[0]
         pace = body.pace * patience(state)
         speed = advance(path, state, dt * pace if step > 0 else 0.0, target_velocity) * pace
         velocity_at(path, state, speed * PREVIEW, ahead)
         velocity_at(path, state, -speed * PREVIEW, back)
-        blow(air, state, step, rng)
+        next_gust(air, state, step, rng)
         if fix_due(step, body.gps_fixes):
-            look(body, state, step, rng)
+            look_at_gps(body, state, step, rng)
         for a in range(3):
             target_velocity[a] *= pace
             change = pace * (ahead[a] - back[a]) / (2 * PREVIEW)
@@ -144,9 +146,9 @@ def fly_on(body, air, path, space, state, dt, most, every, rng, log):
         for a in range(3):
             thrust[a] -= pressure * stream[a]
         thrust[2] += body.mass * GRAVITY + body.rain
-        limit(body, thrust)
+        limit_thrust(body, thrust)
         pulled = length(thrust)
-        outcome = note(path, space, state, dt, every, pulled, body.charge, log)
+        outcome = log_step(path, space, state, dt, log_every, pulled, body.charge, log)
         if outcome != FLYING:
             return outcome
         for a in range(3):
@@ -174,7 +176,7 @@ def fix_due(step, fixes):
 
 
 @compiled
-def look(body, state, step, rng):
+def look_at_gps(body, state, step, rng):
     """What GPS says of place and speed; its error drifts from 0 at the start."""
     for a in range(3):
         if step > 0:
@@ -209,10 +211,10 @@ def spend(body, air, state, dt, thrust, drag, velocity):
 
 
 @compiled
-def drift_on(spring, path, space, state, dt, most, every, rng, log):
+def drift_on(spring, path, space, state, dt, max_steps, log_every, rng, log):
     """The same for offsets without a body: they are added to the route."""
     target_velocity = np.empty(3)
-    for _ in range(most):
+    for _ in range(max_steps):
         advance(path, state, dt * spring.pace if state.counts[0] > 0 else 0.0, target_velocity)
         for a in range(3):
             one, two = rng.standard_normal(), rng.standard_normal()
@@ -229,7 +231,7 @@ def drift_on(spring, path, space, state, dt, most, every, rng, log):
             state.velocity[a] = moved if state.counts[0] > 0 else spring.pace * target_velocity[a]
             state.before[a] = state.position[a] if state.counts[0] > 0 else position
             state.position[a] = position
-        outcome = note(path, space, state, dt, every, np.nan, np.inf, log)
+        outcome = log_step(path, space, state, dt, log_every, np.nan, np.inf, log)
         if outcome != FLYING:
             return outcome
     return FLYING
@@ -286,7 +288,7 @@ def velocity_at(path, state, beyond, velocity):
 
 
 @compiled
-def blow(air, state, step, rng):
+def next_gust(air, state, step, rng):
     """The gust of a step."""
     if air.kind == NONE or (air.kind == GAUSSIAN and step % air.every):
         return
@@ -316,7 +318,7 @@ def blow(air, state, step, rng):
 
 
 @compiled
-def limit(body, thrust):
+def limit_thrust(body, thrust):
     """What the rotors can do of a thrust: first hold the height, then pull sideways, no more than the tilt allows."""
     least = min(LEAST_THRUST * body.thrust, LEAST_LIFT * body.mass * GRAVITY)
     thrust[2] = min(max(thrust[2], least), body.thrust)
@@ -328,7 +330,7 @@ def limit(body, thrust):
 
 
 @compiled
-def note(path, space, state, dt, every, thrust, charge, log):
+def log_step(path, space, state, dt, log_every, thrust, charge, log):
     """Look around after a step, log it if it is time or over, and count it."""
     gap = closest(space, state)
     state.sums[LEAST] = min(state.sums[LEAST], gap)
@@ -344,7 +346,7 @@ def note(path, space, state, dt, every, thrust, charge, log):
         outcome = BATTERY_EMPTY
     elif space.near_goal < np.inf and squared_distance(state.position, state.target) > LOST**2:
         outcome = BLOWN_BACK
-    if state.counts[0] % every == 0 or outcome != FLYING:
+    if state.counts[0] % log_every == 0 or outcome != FLYING:
         row = log[state.counts[1]]
         row[0] = state.counts[0] * dt
         for a in range(3):

@@ -1,5 +1,7 @@
 """How fast a route can be flown: a speed for each waypoint and leg, so that turns and stops stay within what holds."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

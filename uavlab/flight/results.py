@@ -1,5 +1,7 @@
 """What flights leave behind: tracks, offsets, crashes and how sure their number is."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple

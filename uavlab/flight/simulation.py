@@ -1,5 +1,7 @@
 """Flying a route once, or a thousand times."""
 
+from __future__ import annotations
+
 import copy
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -23,7 +25,7 @@ from uavlab.flight.motion import (
     CRASHED,
     FLYING,
     LEAST,
-    Space,
+    Obstacles,
     State,
     steps_to_goal,
 )
@@ -67,7 +69,7 @@ class Setup:
 
     route: Route
     speed: float
-    space: Space
+    space: Obstacles
     uav: UAV
     disturbance: Disturbance
     autopilot: Autopilot
@@ -282,7 +284,7 @@ def setup_of(
             return None, grounded
     touching = (1 - CONTACT) * uav.diameter / 2
     near_goal = autopilot.acceptance_radius if isinstance(first, Wind) else np.inf
-    space = Space(city.occupied, city.runs, city.clearance, city.origin, city.cell, touching, near_goal)
+    space = Obstacles(city.occupied, city.runs, city.clearance, city.origin, city.cell, touching, near_goal)
     return Setup(way, speed, space, uav, disturbance, autopilot, float(time_step), altitude), ""
 
 
@@ -335,7 +337,7 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
             )
         if monitor:
             seen = state.seen_position if isinstance(now, Wind) else state.position
-            advised = monitor.observe(time, off_route(path, seen, state), room(setup.space, state))
+            advised = monitor.observe(time, off_route(path, seen, state), route_clearance(setup.space, state))
             if autopilot.strategy == "grounded" and advised != controller:
                 ending = "landed"
         if ending:
@@ -414,7 +416,7 @@ def off_route(path: Path, seen: np.ndarray, state: State) -> float:
     return float(np.linalg.norm(offset - (offset @ direction) * direction))
 
 
-def room(space: Space, state: State) -> float:
+def route_clearance(space: Obstacles, state: State) -> float:
     """Clearance of the route where the UAV is [m]."""
     point = (state.target - space.origin) / space.cell
     return float(space.cell * distance_to_obstacle(space.occupied, space.clearance, space.cell, point, 10.0))

@@ -1,5 +1,7 @@
 """Offsets on one axis: Gaussian, and the skewed law of a force that grows with the square of the wind."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,7 +41,7 @@ class OffsetModel:
         checks.positive("sigma", self.sigma)
 
     @classmethod
-    def fit(cls, samples: npt.ArrayLike) -> "OffsetModel":
+    def fit(cls, samples: npt.ArrayLike) -> OffsetModel:
         """The model with the mean and the standard deviation (n − 1) of samples [m], at least 2, not all equal."""
         values = checks.samples(samples, least=2)
         return cls(float(values.mean()), float(values.std(ddof=1)))
@@ -103,7 +105,7 @@ class SkewedOffset:
             )
 
     @classmethod
-    def from_wind(cls, steady_offset: float, turbulence_intensity: float) -> "SkewedOffset":
+    def from_wind(cls, steady_offset: float, turbulence_intensity: float) -> SkewedOffset:
         """The model of a UAV that corrects nothing, from the offset that the mean wind alone would hold it at.
 
         Parameters
@@ -119,7 +121,7 @@ class SkewedOffset:
         return cls(steady_offset * mean, steady_offset * sigma, turbulence_intensity)
 
     @classmethod
-    def fit(cls, samples: npt.ArrayLike) -> "SkewedOffset":
+    def fit(cls, samples: npt.ArrayLike) -> SkewedOffset:
         """The model with the mean, standard deviation and skewness of samples [m], at least 3.
 
         Raises

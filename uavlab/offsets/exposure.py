@@ -1,5 +1,7 @@
 """Exposure: the longer a flight passes beside a wall, the likelier it touches it (Rice 1944)."""
 
+from __future__ import annotations
+
 import numpy as np
 import numpy.typing as npt
 from scipy.special import log_ndtr

@@ -1,5 +1,7 @@
 """Offsets on two axes at once: the joint density of REPARE Eq. 17, and the magnitude it gives."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,7 +60,7 @@ class JointOffset:
             raise ValueError(f"correlation must be between -1 and 1, without the ends, got {self.correlation!r}")
 
     @classmethod
-    def fit(cls, samples: npt.ArrayLike) -> "JointOffset":
+    def fit(cls, samples: npt.ArrayLike) -> JointOffset:
         """The model with the means, standard deviations (n − 1) and correlation of samples (N, 2) [m], N at least 3.
 
         Raises

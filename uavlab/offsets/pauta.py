@@ -1,5 +1,7 @@
 """The Pauta criterion: the radius that holds nearly all of what chance does, gross errors, and the distance to keep."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

@@ -6,6 +6,8 @@ A greedy beetle goes to the better tip of its antennae if it is better there tha
 may follow success, not the clock.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

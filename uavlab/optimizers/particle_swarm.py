@@ -5,6 +5,8 @@ v ← ω v + c1 r1 (p_best − x) + c2 r2 (g_best − x), x ← x + v. Whether a
 later; and no step is longer than a fifth of the range.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np

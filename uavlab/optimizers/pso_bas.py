@@ -5,6 +5,8 @@ each particle's best they are a local search, which can only improve it. At its 
 random step.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np

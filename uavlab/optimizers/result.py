@@ -1,5 +1,7 @@
 """What the optimisers share: a function that counts its calls, questions asked well, and the result."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

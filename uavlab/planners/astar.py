@@ -5,6 +5,8 @@ high the first route found is a cheapest one. REPARE (Eqs 11-13) adds a penalty 
 metre on the edges, which keeps A* exact and the cost of a route the same in both directions.
 """
 
+from __future__ import annotations
+
 import time
 from dataclasses import replace
 
@@ -23,14 +25,14 @@ from uavlab.planners.grid import (
     distance_left,
     steps_of,
 )
-from uavlab.planners.heap import open_list, pop, push, room
+from uavlab.planners.heap import open_list, pop, push, sparse_array
 from uavlab.planners.question import Airspace, checked_price, endpoints
 from uavlab.route import Route
 
 TIE_BREAK = 1 + 1e-9
 """Among routes that seem equally short, try the one with less way left: the estimate counts a billionth more."""
 
-ROUNDING = 1 - 1e-12
+COST_ROUNDING = 1 - 1e-12
 """A cost counts as lower only if it is so by more than the rounding of a sum."""
 
 
@@ -123,8 +125,8 @@ def cheapest_route(
     To look for a minimum among a million prices takes a tenth of the time of a search.
     """
     began = time.perf_counter()
-    g = room(np.empty, city.occupied.size, np.float64)
-    parent = room(np.zeros, city.occupied.size, np.uint8)
+    g = sparse_array(np.empty, city.occupied.size, np.float64)
+    parent = sparse_array(np.zeros, city.occupied.size, np.uint8)
     backwards = prices is not None and not as_printed and prices.flat[source] < prices.flat[target]
     first, last = (target, source) if backwards else (source, target)
     expanded, order = search(
@@ -255,7 +257,7 @@ def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent
             if prices is not None and not as_printed:
                 cost *= 0.5 * (price_here + prices[neighbour])
             cost += so_far
-            if parent[neighbour] == UNSEEN or cost < g[neighbour] * ROUNDING:
+            if parent[neighbour] == UNSEEN or cost < g[neighbour] * COST_ROUNDING:
                 g[neighbour] = cost
                 parent[neighbour] = move + 1
                 di, dj, dk = MOVES[move]

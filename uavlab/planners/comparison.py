@@ -6,6 +6,8 @@ many curves as there are particles, one of PSO-BAS several times as many. So all
 refined to be held against a route on the grid: all are refined, or none.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -90,7 +92,7 @@ class Comparison:
     exact: list[Route]
     refinement: float = 0.0
 
-    def table(self) -> "pandas.DataFrame":
+    def table(self) -> pandas.DataFrame:
         """A row per planner: median gap with its 95 % interval, 90 % quantile [%], runs that didn't arrive [%], time.
 
         Its corner says whether the routes are refined, all alike. The interval is a bootstrap over the maps: runs on
@@ -246,7 +248,7 @@ def one_run(planner: Planner, risk_map: RiskMap, budget: int, rng: int, refineme
     history, info = found.info["history"], {**found.info, "evaluations": budget, "refined": last}
     if not found.reached:
         return replace(found, info=info | {"history": np.append(history, np.full(last, np.inf))})
-    better = refine(risk_map, found, rng=rng, budget=last)
+    better = refine(found, risk_map, rng=rng, budget=last)
     together = np.append(history, np.minimum(better.info["history"], history[-1]))
     elapsed = info["elapsed"] + better.info["elapsed"]
     return replace(better, planner=found.planner, info=info | {"history": together, "elapsed": elapsed})

@@ -6,6 +6,8 @@ only at the centres of voxels as for planners on the grid. An optimiser finds ev
 samples along the way would leave: measured at a quarter of a voxel, it claims what isn't so.
 """
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 
@@ -17,8 +19,8 @@ from uavlab.city.bounds import height_limits, slack_of
 from uavlab.city.segments import Runs, least_to_expect, segment_clearance
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
-from uavlab.planners.least_risk import Limits, base_price, in_cells, priced_by
 from uavlab.planners.question import Ends
+from uavlab.planners.risk_question import Limits, Weights, base_price, in_cells
 from uavlab.risk import RiskMap
 from uavlab.risk.drift import NO_FALLS, Falls, rate_ahead
 from uavlab.spline.basis import cubic_bspline, fitted, spread, subdivided
@@ -96,19 +98,6 @@ class Task(NamedTuple):
         return fitted(points, count) if self.spline else spread(points, count)
 
 
-class Weights(NamedTuple):
-    """What a metre costs, see `least_risk`."""
-
-    risk: float
-    length: float
-    threat: float
-    drift: bool
-
-    @property
-    def priced(self) -> str:
-        return priced_by(self.risk, self.threat, self.drift)
-
-
 def task_of(
     risk_map: RiskMap,
     ends: Ends,
@@ -125,7 +114,7 @@ def task_of(
     city = risk_map.city
     source, target = city.index_of(np.array((ends.source, ends.target))) + 0.5
     ahead = weights.risk if weights.drift else 0.0
-    level = base_price(risk_map, 0.0, *weights[1:3]) if ahead > 0 else price
+    level = base_price(risk_map, weights) if ahead > 0 else price
     sky = sky_of(risk_map, level.reshape(city.shape), limits, ahead, max_length)
     highest = float(price[:, ~sky.closed.ravel()].max())
     return Task(sky, source, target, spline, 10 * highest, LONGEST * sum(city.shape) * highest)

@@ -6,6 +6,8 @@ one through a corner; so nothing is cut. The voxels around a node fit into one w
 when the word has no bit in common with the bounding box of the move.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from uavlab.compiled import compiled

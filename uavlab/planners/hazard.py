@@ -5,6 +5,8 @@ the chance that a gust throws the UAV against a wall falls smoothly with the dis
 fast. As a price per metre it lets a route pass a gap quickly where that is worth it, and keep off where it is not.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np

@@ -6,6 +6,8 @@ route doesn't depend on the machine. Memory that is never written costs nothing:
 of a large map is cheap.
 """
 
+from __future__ import annotations
+
 import mmap
 from collections.abc import Callable
 from typing import NamedTuple
@@ -30,7 +32,7 @@ class OpenList(NamedTuple):
 def open_list(nodes: int) -> OpenList:
     """An empty list with room for nodes 0 … nodes − 1."""
     code = code_type(nodes)
-    return OpenList(np.empty(nodes + 1, code), np.empty(nodes + 1), room(np.zeros, nodes, code), np.zeros(1, np.int64))
+    return OpenList(np.empty(nodes + 1, code), np.empty(nodes + 1), sparse_array(np.zeros, nodes, code), np.zeros(1, np.int64))
 
 
 def code_type(nodes: int) -> type:
@@ -38,7 +40,7 @@ def code_type(nodes: int) -> type:
     return np.int32 if nodes <= np.iinfo(np.int32).max else np.int64
 
 
-def room(make: Callable, count: int, dtype: type) -> np.ndarray:
+def sparse_array(make: Callable, count: int, dtype: type) -> np.ndarray:
     """`np.empty` or `np.zeros`, that on a large map take up memory only around the voxels that a search visits.
 
     NumPy asks for huge pages of two megabytes, and a route across the map passes through nearly all of them.
@@ -56,7 +58,7 @@ def push(waiting, node, key):
         slot = waiting.size[0]
     while slot > 1:
         parent = slot // 2
-        if not before(key, node, waiting.key[parent], waiting.node[parent]):
+        if not comes_first(key, node, waiting.key[parent], waiting.node[parent]):
             break
         place(waiting, waiting.node[parent], waiting.key[parent], slot)
         slot = parent
@@ -76,11 +78,11 @@ def pop(waiting):
     slot = 1
     while 2 * slot <= size:
         child = 2 * slot
-        if child < size and before(
+        if child < size and comes_first(
             waiting.key[child + 1], waiting.node[child + 1], waiting.key[child], waiting.node[child]
         ):
             child += 1
-        if not before(waiting.key[child], waiting.node[child], key, node):
+        if not comes_first(waiting.key[child], waiting.node[child], key, node):
             break
         place(waiting, waiting.node[child], waiting.key[child], slot)
         slot = child
@@ -89,7 +91,7 @@ def pop(waiting):
 
 
 @compiled
-def before(key, node, other_key, other_node):
+def comes_first(key, node, other_key, other_node):
     return key < other_key or (key == other_key and node < other_node)
 
 

@@ -5,6 +5,8 @@ everywhere the energy of a move depends on its direction only, so that the short
 map is known for each pair: it combines the three moves whose cone holds the goal. That estimate makes A* exact.
 """
 
+from __future__ import annotations
+
 import time
 from dataclasses import replace
 from functools import partial
@@ -16,9 +18,9 @@ from scipy.spatial import HalfspaceIntersection
 from uavlab import checks
 from uavlab.city import City
 from uavlab.compiled import compiled
-from uavlab.planners.astar import ROUNDING, START, TIE_BREAK, UNSEEN, trace
+from uavlab.planners.astar import COST_ROUNDING, START, TIE_BREAK, UNSEEN, trace
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around_node, steps_of
-from uavlab.planners.heap import open_list, pop, push, room
+from uavlab.planners.heap import open_list, pop, push, sparse_array
 from uavlab.planners.question import Airspace, endpoints
 from uavlab.power import energy_per_metre
 from uavlab.route import Route
@@ -80,7 +82,7 @@ def least_energy(
     )
     began = time.perf_counter()
     costs = city.cell * LENGTHS * per_metre(MOVES)
-    g, parent = room(np.empty, city.occupied.size, np.float64), room(np.zeros, city.occupied.size, np.uint8)
+    g, parent = sparse_array(np.empty, city.occupied.size, np.float64), sparse_array(np.zeros, city.occupied.size, np.uint8)
     expanded = search(
         airspace.blocked, costs, slopes_of(costs), ends.source, ends.target, g, parent, open_list(city.occupied.size)
     )
@@ -134,7 +136,7 @@ def search(blocked, costs, slopes, start, goal, g, parent, waiting):
                 continue
             neighbour = node + steps[move]
             cost = g[node] + costs[move]
-            if parent[neighbour] == UNSEEN or cost < g[neighbour] * ROUNDING:
+            if parent[neighbour] == UNSEEN or cost < g[neighbour] * COST_ROUNDING:
                 g[neighbour] = cost
                 parent[neighbour] = move + 1
                 i, j, k = MOVES[move]

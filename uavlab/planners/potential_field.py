@@ -4,6 +4,8 @@ It looks only at where it is. That makes it simple, lets it keep a distance to w
 push cancel: in front of a wall across the way, in a notch. Not arriving is found out and said, with the place.
 """
 
+from __future__ import annotations
+
 import math
 import time
 from typing import NamedTuple

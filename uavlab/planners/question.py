@@ -5,6 +5,8 @@ zones. A start or a goal below `min_height` is left and reached vertically: the 
 voxel above it that is high enough, and the vertical legs are added to what it finds.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
 from typing import Any, NamedTuple
 

@@ -7,6 +7,8 @@ steady the zone reaches farther on the side that it blows to. When the disturban
 the route is planned again.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -156,7 +158,7 @@ def repare(
         route = replanned(route, now, plan, conditions_at, uav.cruise_speed, interval)
     else:
         place = tuple(route.points[:1].ravel().tolist())
-        route = named(route, route.points, [Plan(0.0, place, now.name, now.safe_distance)])
+        route = as_repare(route, route.points, [Plan(0.0, place, now.name, now.safe_distance)])
     return ends.added_to(route, priced="REPARE's zone")
 
 
@@ -189,11 +191,11 @@ def replanned(
         plans.append(Plan(clock, tuple(flown[-1].tolist()), now.name, now.safe_distance))
         if now.grounded:
             reason = f"grounded after {clock:.1f} s at {checks.show(flown[-1])}: {now.grounded}"
-            return replace(named(route, flown, plans), reached=False, reason=reason, cost=np.inf)
+            return replace(as_repare(route, flown, plans), reached=False, reason=reason, cost=np.inf)
         route = plan(flown[-1], now)
         expanded += route.info["expanded"]
         elapsed += route.info["elapsed"]
-    return named(replace(route, info=route.info | {"expanded": expanded, "elapsed": elapsed}), flown, plans)
+    return as_repare(replace(route, info=route.info | {"expanded": expanded, "elapsed": elapsed}), flown, plans)
 
 
 def refuse_swallowed(
@@ -230,7 +232,7 @@ class Plan(NamedTuple):
     safe_distance: float
 
 
-def named(route: Route, points: npt.ArrayLike, plans: list[Plan]) -> Route:
+def as_repare(route: Route, points: npt.ArrayLike, plans: list[Plan]) -> Route:
     """The route with the points flown, REPARE's name and its plans."""
     info = route.info | {"plans": plans, "safe_distance": plans[-1].safe_distance}
     return replace(route, points=np.asarray(points), planner="REPARE", info=info)

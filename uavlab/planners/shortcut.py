@@ -7,6 +7,8 @@ integrate a price along all those lines takes time with the cube of the waypoint
 A line that touches the edge or the corner of an obstacle is blocked, the same rule as for the moves on the grid.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import replace
 
@@ -113,12 +115,12 @@ def rounds(
     """The waypoints to keep (K,), what the way over them costs, and the end of the first leg that isn't free, or 0."""
     kept = np.arange(len(points))
     while True:
-        best, before = cheapest_subset(points[kept], bounds, prices, cheapest, same, lookback)
+        best, parent = cheapest_subset(points[kept], bounds, prices, cheapest, same, lookback)
         if not np.isfinite(best).all():
             return kept, np.inf, int(np.flatnonzero(~np.isfinite(best))[0])
         chosen = [len(kept) - 1]
         while chosen[-1] != 0:
-            chosen.append(int(before[chosen[-1]]))
+            chosen.append(int(parent[chosen[-1]]))
         done = len(kept) <= lookback or len(chosen) == len(kept)
         kept = kept[chosen[::-1]]
         if done:
@@ -138,7 +140,7 @@ def cheapest_subset(points, bounds, price, least_price, same, lookback):
     a leg from a waypoint is probably in the way of the next one from there, too, so that is looked at first.
     """
     best = np.full(len(points), np.inf)
-    before = np.zeros(len(points), np.int64)
+    parent = np.zeros(len(points), np.int64)
     in_the_way = [(-1, 0, 0, 0, 0.0) for _ in points]
     best[0] = 0.0
     for j in range(1, len(points)):
@@ -158,10 +160,10 @@ def cheapest_subset(points, bounds, price, least_price, same, lookback):
             cost = line_price(price, least_price, points[i], points[j], limit)
             if cost < limit:
                 best[j] = best[i] + cost
-                before[j] = i
+                parent[j] = i
         if best[j] == np.inf:
             break
-    return best, before
+    return best, parent
 
 
 @compiled

@@ -5,6 +5,8 @@ points of a cubic B-spline; the swarm begins on the best of some random arcs; an
 same curve are moved one by one. The same refinement makes any route better, also the exact optimum on the grid.
 """
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,11 +19,12 @@ from uavlab import checks
 from uavlab.optimizers import Result, bas, pso, pso_bas
 from uavlab.optimizers.particle_swarm import SWARM
 from uavlab.planners.ant_colony import ANTS, ant_colony
-from uavlab.planners.curves import PER_SEGMENT, Measure, Task, Weights, breaches, costs_of, task_of
-from uavlab.planners.least_risk import (
+from uavlab.planners.curves import PER_SEGMENT, Measure, Task, breaches, costs_of, task_of
+from uavlab.planners.risk_question import (
     MAX_PITCH,
     MAX_TURN,
     RISK_AHEAD,
+    Weights,
     checked_length,
     checked_limits,
     finished,
@@ -74,9 +77,9 @@ def waypoint_swarm(
     arcs: int = ARCS,
     initial: Route | None = None,
     refinement: float = REFINE,
-    risk: float = 1.0,
-    length: float = 0.0,
-    threat: float = 0.0,
+    risk_weight: float = 1.0,
+    length_weight: float = 0.0,
+    threat_weight: float = 0.0,
     max_turn: float = MAX_TURN,
     max_pitch: float = MAX_PITCH,
     max_length: float | None = None,
@@ -92,7 +95,9 @@ def waypoint_swarm(
 
     Parameters
     ----------
-    risk_map, start, goal, risk, length, threat, max_pitch, max_length, min_clearance, min_height, max_height
+    risk_map, start, goal, risk_weight, length_weight, threat_weight, max_pitch
+        As for `least_risk`.
+    max_length, min_clearance, min_height, max_height
         As for `least_risk`.
     rng : numpy.random.Generator or int
         Or a seed for one.
@@ -152,8 +157,9 @@ def waypoint_swarm(
     if initial is not None:
         checks.instance("initial", initial, Route)
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
-    weights, longest = Weights(risk, length, threat, drift), checked_length(max_length)
-    price = price_per_cell(risk_map, *weights)
+    weights = Weights.checked(risk_weight, length_weight, threat_weight, drift)
+    longest = checked_length(max_length)
+    price = price_per_cell(risk_map, weights)
     ends = flyable_endpoints(risk_map, start, goal, limits)
     task = task_of(risk_map, ends, price, weights, limits, curve == "spline", longest)
     space = space_of(task, waypoints, encoding)
@@ -162,9 +168,9 @@ def waypoint_swarm(
     measure = Measure(task)
     if ants:
         walked = ant_colony(
-            risk_map, start, goal, rng=rng, budget=ants, risk=risk, length=length, threat=threat, max_turn=max_turn,
-            max_pitch=max_pitch, max_length=max_length, min_clearance=min_clearance, min_height=min_height,
-            max_height=max_height, drift=drift,
+            risk_map, start, goal, rng=rng, budget=ants, risk_weight=risk_weight, length_weight=length_weight,
+            threat_weight=threat_weight, max_turn=max_turn, max_pitch=max_pitch, max_length=max_length,
+            min_clearance=min_clearance, min_height=min_height, max_height=max_height, drift=drift,
         )  # fmt: skip
         measure.note(walked.info["history"], walked.info["iterations"])
         initial = walked if walked.reached else initial
@@ -180,7 +186,7 @@ def waypoint_swarm(
     measure.iterations += (before + found.iterations).tolist()
     if last:
         move_finer(measure, space, found, last, rng)
-    route = finished(route_of(measure, risk_map, f"{optimizer} waypoints"), ends, price, weights.priced, longest)
+    route = finished(route_of(measure, risk_map, f"{optimizer} waypoints"), ends, price, weights, longest)
     if ants and walked.cost < route.cost:
         route = replace(walked, planner=route.planner, info={"control": walked.points})
     info = {
@@ -198,14 +204,14 @@ def waypoint_swarm(
 
 
 def refine(
-    risk_map: RiskMap,
     route: Route,
+    risk_map: RiskMap,
     *,
     rng: np.random.Generator | int,
     budget: int = 4000,
-    risk: float = 1.0,
-    length: float = 0.0,
-    threat: float = 0.0,
+    risk_weight: float = 1.0,
+    length_weight: float = 0.0,
+    threat_weight: float = 0.0,
     max_turn: float = MAX_TURN,
     max_pitch: float = MAX_PITCH,
     max_length: float | None = None,
@@ -220,13 +226,13 @@ def refine(
 
     Parameters
     ----------
-    risk_map, risk, length, threat, max_turn, max_pitch
+    route : Route
+        From the centre of a voxel to that of another; of a planner.
+    risk_map, risk_weight, length_weight, threat_weight, max_turn, max_pitch
         As for `waypoint_swarm`.
     max_length, min_clearance, min_height, max_height, drift : optional
         As well; by default what the route promised, the least height at least the map's. `max_length=numpy.inf` lets
         it grow.
-    route : Route
-        From the centre of a voxel to that of another; of a planner.
     rng : numpy.random.Generator or int
         Or a seed for one.
     budget : int
@@ -256,8 +262,9 @@ def refine(
         risk_map, max_turn, max_pitch, kept["min_clearance"], kept["min_height"], kept["max_height"]
     )
     longest = route.max_length if max_length is None else checked_length(max_length)
-    weights = Weights(risk, length, threat, RISK_AHEAD in route.priced if drift is None else drift)
-    price = price_per_cell(risk_map, *weights)
+    drift = RISK_AHEAD in route.priced if drift is None else drift
+    weights = Weights.checked(risk_weight, length_weight, threat_weight, drift)
+    price = price_per_cell(risk_map, weights)
     ends = flyable_endpoints(risk_map, route.points[0], route.points[-1], limits)
     task = task_of(risk_map, ends, price, weights, limits, True, longest)
     measure, route = Measure(task), route.en_route
@@ -270,7 +277,7 @@ def refine(
     if better.cost < cost or cost == np.inf:
         route, cost = better, better.cost
     route = replace(route, cost=cost, info={**route.info, **info})
-    return finished(route, ends, price, weights.priced, longest)
+    return finished(route, ends, price, weights, longest)
 
 
 def check_refinement(refinement: float) -> None:
@@ -279,7 +286,7 @@ def check_refinement(refinement: float) -> None:
         raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
 
 
-class Space(NamedTuple):
+class Encoding(NamedTuple):
     """How a vector stands for K points: each is an anchor plus its block of numbers along the axes [cells]."""
 
     ends: np.ndarray  # (2, 3): first and last point of the curve
@@ -299,12 +306,12 @@ class Space(NamedTuple):
         return np.clip(inner.reshape(len(control), len(self.bounds)), *self.bounds.T)
 
 
-def space_of(task: Task, waypoints: int, encoding: str) -> Space:
+def space_of(task: Task, waypoints: int, encoding: str) -> Encoding:
     """Points anywhere on the map, or on vertical planes that cut the way from start to goal evenly."""
     ends = np.stack([task.source, task.target])
     size = np.array(task.sky.closed.shape, float) - 1e-9  # within the last voxel
     if encoding == "points":
-        return Space(ends, np.zeros((waypoints, 3)), np.eye(3), np.tile(np.stack([0 * size, size], 1), (waypoints, 1)))
+        return Encoding(ends, np.zeros((waypoints, 3)), np.eye(3), np.tile(np.stack([0 * size, size], 1), (waypoints, 1)))
     side = sideways_of(task)
     anchors = task.source + np.linspace(0, 1, waypoints + 2)[1:-1, None] * (task.target - task.source)
     anchors[:, 2] = 0.0
@@ -312,7 +319,7 @@ def space_of(task: Task, waypoints: int, encoding: str) -> Space:
     walls = np.sort([(wall - anchors[:, side != 0]) / side[side != 0] for wall in (0.0, size[side != 0])], axis=0)
     bounds[:, 0, 0], bounds[:, 0, 1] = walls[0].max(axis=1), walls[1].min(axis=1)
     bounds[:, 1, 1] = size[2]
-    return Space(ends, anchors, np.stack([side, (0.0, 0.0, 1.0)]), bounds.reshape(-1, 2))
+    return Encoding(ends, anchors, np.stack([side, (0.0, 0.0, 1.0)]), bounds.reshape(-1, 2))
 
 
 def shares(budget: int, optimizer: str, arcs: int, refinement: float, swarm: int) -> tuple[int, int, int]:
@@ -329,7 +336,7 @@ def shares(budget: int, optimizer: str, arcs: int, refinement: float, swarm: int
 
 
 def first_vectors(
-    measure: Measure, space: Space, arcs: int, initial: np.ndarray | None, rng: np.random.Generator
+    measure: Measure, space: Encoding, arcs: int, initial: np.ndarray | None, rng: np.random.Generator
 ) -> np.ndarray:
     """Where the swarm begins (N, D): near the initial route (K + 2, 3) if there is one, then on the best arcs."""
     first = space.vectors(arcs_between(measure.task, len(space.anchors), arcs, rng))
@@ -338,7 +345,7 @@ def first_vectors(
     return first if initial is None else np.concatenate([space.vectors(initial[None]), first])
 
 
-def move_finer(measure: Measure, space: Space, found: Result, budget: int, rng: np.random.Generator) -> None:
+def move_finer(measure: Measure, space: Encoding, found: Result, budget: int, rng: np.random.Generator) -> None:
     """Move twice as many points one by one: half of the budget for the best few curves, half for the best of those."""
     task, per_segment = measure.task, PER_SEGMENT // 2
     ends = np.concatenate([found.best[None], found.swarm[1:CANDIDATES]])  # a lone beetle may have left its best

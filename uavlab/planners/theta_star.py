@@ -6,6 +6,8 @@ Lazy: a node is taken to be in sight of its parent's parent, and only when its t
 Where it isn't free, or dear, the best of the neighbours that were expanded is the parent.
 """
 
+from __future__ import annotations
+
 import itertools
 import time
 from dataclasses import replace
@@ -17,9 +19,9 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.bounds import bounds_of, keeps
 from uavlab.compiled import compiled
-from uavlab.planners.astar import ROUNDING, no_way
+from uavlab.planners.astar import COST_ROUNDING, no_way
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, steps_of
-from uavlab.planners.heap import code_type, open_list, pop, push, room
+from uavlab.planners.heap import code_type, open_list, pop, push, sparse_array
 from uavlab.planners.question import Airspace, checked_price, endpoints
 from uavlab.planners.shortcut import distance, line_price, shortcut
 from uavlab.route import Route
@@ -81,9 +83,9 @@ def theta_star(
     began = time.perf_counter()
     count = city.occupied.size
     code = code_type(count)
-    g, parent = room(np.empty, count, np.float64), room(np.empty, count, code)
-    bound, guess = room(np.empty, count, np.float64), room(np.zeros, count, code)
-    state = room(np.zeros, count, np.uint8)
+    g, parent = sparse_array(np.empty, count, np.float64), sparse_array(np.empty, count, code)
+    bound, guess = sparse_array(np.empty, count, np.float64), sparse_array(np.zeros, count, code)
+    state = sparse_array(np.zeros, count, np.uint8)
     expanded = search(
         airspace.blocked, bounds_of(city, **airspace.promises), prices, cheapest, float(weight),
         ends.source, ends.target, g, parent, bound, guess, state, open_list(count),
@@ -141,7 +143,7 @@ def search(blocked, bounds, price, cheapest, weight, start, goal, g, parent, bou
             put_centre(there, guess[node] - 1, ny, nz)
             look(bounds, price, cheapest, node, here, there, around, steps, g, parent, guess, state)
             later = g[node] + weight * cheapest * distance(here, aim)
-            if later * ROUNDING > key:
+            if later * COST_ROUNDING > key:
                 push(waiting, node, later)
                 continue
         if node == goal:
@@ -159,7 +161,7 @@ def search(blocked, bounds, price, cheapest, weight, start, goal, g, parent, bou
             known = bound[neighbour] if guess[neighbour] > 0 else np.inf
             if state[neighbour] == OPEN:
                 known = min(known, g[neighbour])
-            if low < known * ROUNDING:
+            if low < known * COST_ROUNDING:
                 bound[neighbour], guess[neighbour] = low, parent[node] + 1
                 push(waiting, neighbour, low + weight * cheapest * distance(here, aim))
     return expanded

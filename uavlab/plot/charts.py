@@ -1,5 +1,7 @@
 """Quantities along a route, of several planners, or by name."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from itertools import cycle
 

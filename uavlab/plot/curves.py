@@ -1,5 +1,7 @@
 """Curves: curvature and pitch along them, and how they pass corners."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import matplotlib.pyplot as plt

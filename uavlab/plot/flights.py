@@ -1,5 +1,7 @@
 """Flights: tracks with crashes, crash rates, what happens over time, the safety domain."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -4,6 +4,8 @@ Where the ground is level, heights are counted from it, and figures say so. Wher
 map, and figures say how high the ground is.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,5 +1,7 @@
 """The city from above or in section, with routes, fields, risk and searches."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import matplotlib.pyplot as plt

@@ -1,5 +1,7 @@
 """The scene as a picture: city, routes and flights in three dimensions, lit and sorted by depth."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,5 +1,7 @@
 """What all figures share: colours that colour-blind readers can tell apart, maps from above, labels."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import matplotlib

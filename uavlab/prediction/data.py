@@ -1,5 +1,7 @@
 """Tables to learn from: simulated offsets in synthetic or real weather, split as REPARE splits its own."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -90,7 +92,7 @@ class Dataset:
     setting : Setting
     """
 
-    features: "pandas.DataFrame"
+    features: pandas.DataFrame
     offsets: np.ndarray
     classes: np.ndarray
     log_median: np.ndarray
@@ -107,7 +109,7 @@ class Dataset:
 
 def synthetic_weather(
     count: int, rng: np.random.Generator | int, *, wind_scale: float = 4.0, wind_shape: float = 2.0
-) -> "pandas.DataFrame":
+) -> pandas.DataFrame:
     """Hours of a made-up year at 40° north: seasons, days, clouds, wind from everywhere.
 
     Parameters

@@ -7,6 +7,8 @@ the best accuracy that any model can reach.
 An offset ξ [m] is what the strongest gust of a flight reaches. Its class is the offset rounded up.
 """
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -214,7 +216,7 @@ def bayes_accuracy(log_median: npt.ArrayLike, noise: float, class_count: int = 6
     return float(class_probabilities(log_median, noise, class_count).max(axis=1).mean())
 
 
-def feature_table(weather: Any, names: tuple[str, ...] = FEATURES) -> "pandas.DataFrame":
+def feature_table(weather: Any, names: tuple[str, ...] = FEATURES) -> pandas.DataFrame:
     """The named columns of a weather, in order and without gaps, as a table; raises ValueError as `checked_columns`."""
     table = checked_columns(weather, names)
     wrong = missing_values(table)
@@ -223,7 +225,7 @@ def feature_table(weather: Any, names: tuple[str, ...] = FEATURES) -> "pandas.Da
     return table
 
 
-def checked_columns(weather: Any, names: tuple[str, ...] = FEATURES) -> "pandas.DataFrame":
+def checked_columns(weather: Any, names: tuple[str, ...] = FEATURES) -> pandas.DataFrame:
     """The named columns in this order; a ValueError lists those that are missing, and what there is instead."""
     pandas = require("pandas")
     if isinstance(weather, Weather):
@@ -250,7 +252,7 @@ def checked_columns(weather: Any, names: tuple[str, ...] = FEATURES) -> "pandas.
     return pandas.DataFrame({name: checks.numbers(name, table[name]) for name in names}, index=table.index)
 
 
-def missing_values(table: "pandas.DataFrame") -> str:
+def missing_values(table: pandas.DataFrame) -> str:
     """How many rows have a value that is no number, in which columns, and where; empty when there is none."""
     wrong = ~np.isfinite(table.to_numpy(dtype=float))
     rows = table.index[wrong.any(axis=1)]

@@ -5,6 +5,8 @@ values between them. What makes the better ones better is no tuning but what the
 that the offset itself is known, that its scatter is log-normal, and that too low is worse than too high.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -98,7 +100,7 @@ MODELS: Mapping[str, Model] = {
 }
 
 
-def fit_log_offset(features: "pandas.DataFrame", offsets: npt.ArrayLike) -> tuple[Any, np.ndarray]:
+def fit_log_offset(features: pandas.DataFrame, offsets: npt.ArrayLike) -> tuple[Any, np.ndarray]:
     """An XGBoost regression of ln ξ, and its residuals on rows that it hadn't learned from.
 
     Parameters
@@ -168,7 +170,7 @@ def compare_models(
     jobs: int | None = None,
     progress: bool = True,
     each: bool = False,
-) -> "pandas.DataFrame":
+) -> pandas.DataFrame:
     """Train every model on one dataset per seed, and compare.
 
     Parameters

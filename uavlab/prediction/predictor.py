@@ -5,6 +5,8 @@ its probability; the class to fly with is the one that the offset doesn't exceed
 own JSON, in which it also keeps what it was trained on: it refuses other features, and warns outside of their ranges.
 """
 
+from __future__ import annotations
+
 import hashlib
 import json
 import warnings
@@ -92,7 +94,7 @@ class OffsetPredictor:
         if not 0.5 <= self.quantile < 1:
             raise ValueError(f"quantile must be from 0.5 to below 1, got {self.quantile!r}")
 
-    def fit(self, features: Any, offsets: npt.ArrayLike, *, drop_nan: bool = False) -> "OffsetPredictor":
+    def fit(self, features: Any, offsets: npt.ArrayLike, *, drop_nan: bool = False) -> OffsetPredictor:
         """A predictor that has learned from these flights.
 
         Parameters
@@ -246,7 +248,7 @@ class OffsetPredictor:
         Path(path).write_bytes(booster.save_raw("json"))
 
     @classmethod
-    def load(cls, path: str | PathLike[str], features: tuple[str, ...] = FEATURES) -> "OffsetPredictor":
+    def load(cls, path: str | PathLike[str], features: tuple[str, ...] = FEATURES) -> OffsetPredictor:
         """Read what `save` wrote.
 
         Parameters

@@ -1,5 +1,7 @@
 """Packages that only the prediction needs, imported when they are first used: XGBoost alone takes seconds."""
 
+from __future__ import annotations
+
 import importlib
 from typing import Any
 

@@ -5,6 +5,8 @@ Neither paper gives its map, only satellite pictures of two universities. A refe
 possible; random campuses show what is usual.
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Sequence
 from importlib.resources import files

@@ -4,6 +4,8 @@ The papers let it fall straight down. On a map of 5 m voxels it then lands seven
 was counted. Here the ballistic fall is followed voxel by voxel until it meets the ground or a building.
 """
 
+from __future__ import annotations
+
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -45,7 +47,7 @@ class Falls(NamedTuple):
     cars: np.ndarray  # (nx, ny) deaths in cars [1/h]
 
 
-def falls_of(risk_map: "RiskMap") -> Falls:
+def falls_of(risk_map: RiskMap) -> Falls:
     """All falls on a map, from as high as the map is."""
     city, uav = risk_map.city, risk_map.uav
     pitch = np.radians(np.arange(-90.0, 90.0 + PITCH_STEP / 2, PITCH_STEP))
@@ -90,7 +92,7 @@ def fall_steps(fall: np.ndarray, depth: float, cell: float) -> np.ndarray:
     return np.array([np.interp(steps, way, values) for values in fall])
 
 
-def landing_rate(risk_map: "RiskMap", index: np.ndarray, direction: np.ndarray) -> np.ndarray:
+def landing_rate(risk_map: RiskMap, index: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Deaths per hour of flight [1/h] if the UAV flies in a direction (3,) through the centres of voxels (M, 3)."""
     return landing_rates(risk_map.falls, np.asarray(direction, dtype=float), np.ascontiguousarray(index))
 

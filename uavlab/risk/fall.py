@@ -5,6 +5,8 @@ Eq. 7, PSO-BAS Eq. 5). The full ballistic fall, where the drag acts against the 
 to judge the closed form, and because the wreck of a UAV at 16 m/s doesn't land where it failed.
 """
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np

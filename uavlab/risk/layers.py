@@ -4,6 +4,8 @@ Each gives one number per column of voxels, (nx, ny), for `RiskMap`. Rasters and
 that they cover, so that nobody is lost or counted twice, and narrow roads on coarse maps keep their cars.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,5 +1,7 @@
 """The risk map: deaths per hour of flight in each voxel, and what a route costs on it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise

@@ -4,6 +4,8 @@ What a map of the world says of roads and land is turned into what the papers as
 are assumptions, and are said: the papers give one number of cars for all roads, and five classes of shelter.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple

@@ -5,6 +5,8 @@ depends on its energy and on what shelters them. P2, cars hit: failures per hour
 by cars × deaths per crash.
 """
 
+from __future__ import annotations
+
 import numpy as np
 import numpy.typing as npt
 from scipy.special import expit

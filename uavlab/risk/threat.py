@@ -5,6 +5,8 @@ a building (RISK-ACO Eq. 1). As printed J_s is a minimum over the route, which n
 one building of any height, and is infinite above its centre. As a layer it adds up.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from uavlab import checks

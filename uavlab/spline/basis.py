@@ -1,5 +1,7 @@
 """Uniform cubic B-splines by their matrix form, and B-splines of any degree by the recursion of their basis."""
 
+from __future__ import annotations
+
 import numpy as np
 import numpy.typing as npt
 

@@ -1,5 +1,7 @@
 """A curve and what can be measured on it: length, curvature, pitch, and how near it comes to the buildings."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -146,7 +148,7 @@ class Curve:
         return f"<Curve by {self.planner}: {self.length:.1f} m, {len(self.control)} control points>"
 
     @property
-    def en_route(self) -> "Curve":
+    def en_route(self) -> Curve:
         """The curve between take-off and landing: what is promised of heights, clearance and turns holds there."""
         control = self.control[self.takeoff : len(self.control) - self.landing]
         return replace(self, control=control, takeoff=0, landing=0) if self.takeoff or self.landing else self

@@ -5,6 +5,8 @@ says nothing without a speed: on a circle of 5 m a UAV at 16 m/s needs five time
 that holds weight, wind and the turn together, and how far the UAV must tilt for it.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 import numpy as np

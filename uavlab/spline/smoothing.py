@@ -1,5 +1,7 @@
 """From a route to a curve that touches nothing: a B-spline over its waypoints, repaired where it cuts a corner."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np

@@ -5,6 +5,8 @@ gust that a hovering UAV can hold. And the wind that it flies against bounds the
 the envelope when it stays below all three.
 """
 
+from __future__ import annotations
+
 import numpy as np
 import numpy.typing as npt
 

@@ -5,6 +5,8 @@ newtons, speeds in m/s. Wind is where the air moves to: a vector (east, north) o
 meteorologist's direction, in `Weather`, is where the wind comes from.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
@@ -83,7 +85,7 @@ class Weather:
         return float(air_density(self.temperature_c, self.humidity_percent, self.pressure_hpa))
 
     @property
-    def reference_wind(self) -> "ReferenceWind":
+    def reference_wind(self) -> ReferenceWind:
         """The wind to reckon with, Eq. 3."""
         return reference_wind(self.forecast_wind, self.measured_wind, self.forecast_max_wind)
 

@@ -1,5 +1,7 @@
 """The user's own weather: a CSV file with named columns and units becomes states of the weather and features."""
 
+from __future__ import annotations
+
 import csv
 import re
 import warnings
@@ -161,7 +163,7 @@ class WeatherRecord:
         return f"row {row}" if self.time is None else f"row {row} ({self.time[row]})"
 
     @property
-    def features(self) -> "pandas.DataFrame":
+    def features(self) -> pandas.DataFrame:
         """The six features of `uavlab.prediction`, of the rows that have them all.
 
         Raises

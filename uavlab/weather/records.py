@@ -5,6 +5,8 @@ the most typical one of the years 1976 to 2005, measured at the airport (36.1° 
 pvlib ships it under the 3-clause BSD licence.
 """
 
+from __future__ import annotations
+
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
@@ -22,7 +24,7 @@ FEATURES = {
 """pvlib's names, and ours."""
 
 
-def greensboro_weather() -> "pandas.DataFrame":
+def greensboro_weather() -> pandas.DataFrame:
     """A typical year of Greensboro, hour by hour: the six features of REPARE's prediction (section 2.2.3).
 
     Its rain is left out: the column adds up to 8 345 mm, more than seven times what falls there in a year.

@@ -6,6 +6,8 @@ spectrum that a filter of first or second order makes from white noise. Here the
 have the model's own covariance at any time step, from the first one on.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
