@@ -29,7 +29,7 @@ DRAWING = {
 @pytest.mark.parametrize("rng", [None, 1.5, -1, "1", True, [], [1, None], np.random])
 @pytest.mark.parametrize("draw", DRAWING.values(), ids=DRAWING)
 def test_what_gives_other_results_each_time_is_no_seed(draw, rng):
-    with pytest.raises(ValueError, match=r"(rng|seed) must be a numpy\.random\.Generator, or a seed .*, got "):
+    with pytest.raises(ValueError, match=r"rng must be a numpy\.random\.Generator, or a seed .*, got "):
         draw(rng)
 
 

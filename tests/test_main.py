@@ -13,9 +13,10 @@ import pytest
 
 from uavlab import plot
 from uavlab.__main__ import free_memory, main, tell
-from uavlab.flight import Flights, Wind
+from uavlab.flight import Flights
 from uavlab.report import Conditions, Trial, trial_table
 from uavlab.vehicle import LIGHT_QUADROTOR
+from uavlab.weather import Wind
 
 pytestmark = pytest.mark.filterwarnings("error:.*city.source tells all:UserWarning")
 

@@ -8,7 +8,7 @@ from matplotlib.quiver import Quiver
 
 from uavlab import plot, scene
 from uavlab.city import City
-from uavlab.flight import Flight, OffsetProcess, Rate, Wind, fly
+from uavlab.flight import Flight, OffsetProcess, Rate, fly
 from uavlab.flight.motion import COLUMNS
 from uavlab.offsets import safety_domain
 from uavlab.planners import Comparison, astar, least_risk, pareto_front, potential_field, potential_forces
@@ -16,6 +16,7 @@ from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
 from uavlab.route import Route
 from uavlab.spline import Curve
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
+from uavlab.weather import Wind
 
 
 @pytest.fixture(scope="module")
@@ -121,7 +122,7 @@ def test_corner_shows_where_the_body_touches_and_its_width(table1):
     through = Curve(np.array([[50.0, 12, 30], [58, 10, 30], [66, 18, 30], [72, 10, 30]]), planner="through")
     around = Curve(np.array([[50.0, 12, 30], [58, 10, 30], [72, 10, 30]]), planner="around")
     route = Route(through.control, "given")
-    figure = plot.corner(table1, through, around, center=(64, 15, 30), reach=8.0, diameter=2.0, route=route)
+    figure = plot.corner(table1, through, around, center=(64, 15, 30), reach=8.0, uav_diameter=2.0, route=route)
     left, right = figure.axes
     for axes in (left, right):
         assert axes.get_aspect() == 1.0
@@ -149,14 +150,20 @@ def test_corner_shows_where_the_body_touches_and_its_width(table1):
         (lambda city, curve: plot.curve_profile(curve, speed=0, cell=5), "speed must be finite and above 0"),
         (lambda city, curve: plot.curve_profile(curve, speed=8, cell=-5), "cell must be finite and above 0"),
         (
-            lambda city, curve: plot.corner(city, curve.route(), center=(0, 0, 0), reach=5, diameter=1),
+            lambda city, curve: plot.corner(city, curve.route(), center=(0, 0, 0), reach=5, uav_diameter=1),
             "curves must be a Curve, got Route",
         ),
-        (lambda city, curve: plot.corner(city, curve, center=(5, 5, 120), reach=5, diameter=1), "height must lie on"),
-        (lambda city, curve: plot.corner(city, curve, center=5, reach=5, diameter=1), "center must be"),
-        (lambda city, curve: plot.corner(city, curve, center=(5, 5, 5), reach=0, diameter=1), "reach must be"),
-        (lambda city, curve: plot.corner(city, curve, center=(5, 5, 5), reach=5, diameter=0), "diameter must be"),
-        (lambda city, curve: plot.corner(curve, center=(5, 5, 5), reach=5, diameter=1), "city must be a City"),
+        (
+            lambda city, curve: plot.corner(city, curve, center=(5, 5, 120), reach=5, uav_diameter=1),
+            "height must lie on",
+        ),
+        (lambda city, curve: plot.corner(city, curve, center=5, reach=5, uav_diameter=1), "center must be"),
+        (lambda city, curve: plot.corner(city, curve, center=(5, 5, 5), reach=0, uav_diameter=1), "reach must be"),
+        (
+            lambda city, curve: plot.corner(city, curve, center=(5, 5, 5), reach=5, uav_diameter=0),
+            "uav_diameter must be",
+        ),
+        (lambda city, curve: plot.corner(curve, center=(5, 5, 5), reach=5, uav_diameter=1), "city must be a City"),
     ],
 )
 def test_curves_are_not_drawn_from_something_else(draw, message, table1):

@@ -152,7 +152,7 @@ def test_searches_tracks_and_corners_tell_buildings_from_ground(hill, over):
     built = plot.tracks(hill, {"A*": [flight]}).axes[0].images[0].get_array()
     assert np.ma.getmaskarray(built).sum() == built.size - 6 * 8 - 4 * 3
     curve = Curve(np.array([[60.0, 40, 22], [80, 20, 22], [110, 20, 22]]))
-    assert brown(plot.corner(hill, curve, center=(90, 40, 22), reach=30, diameter=1).axes[0]).any()
+    assert brown(plot.corner(hill, curve, center=(90, 40, 22), reach=30, uav_diameter=1).axes[0]).any()
     assert brown(plot.field(hill, 21.0, (180, 60, 21), spacing=10.0).axes[0]).any()
 
 
@@ -286,7 +286,7 @@ def test_names_are_shown_as_they_are(hill, over, name):
         plot.tracks(city, {name: [flight]}, {name: route}),
         plot.in_flight({name: flight}, **{name: 20.0}),
         plot.curve_profile(curve, speed=8.0, cell=5.0),
-        plot.corner(city, curve, center=(80, 30, 22), reach=20, diameter=1, route=route),
+        plot.corner(city, curve, center=(80, 30, 22), reach=20, uav_diameter=1, route=route),
         plot.expansions(city, route),
         plot.bars({name: 1.0}, "m"),
         plot.risk(RiskMap(city, 1e-3, 0.5), 21.0, route),

@@ -316,18 +316,21 @@ CHECK = ConditionCheck(3.0)
         ),
         (lambda: resilience_level("light", "storm"), "disturbance must be one of 'none', 'mild', .* got 'storm'"),
         (lambda: resilience_level(["light"], "mild"), r"load must be one of .* got \['light'\]"),
-        (lambda: safe_distance("light", 6.0), "disturbance must be one of .* got 6.0"),
-        (lambda: safe_distance("light", "mild", reading="loose"), "reading must be 'table' or 'physical', got 'loose'"),
+        (lambda: safe_distance("light", 6.0), "disturbance must be one of .*, a Wind or a Weather, got 6.0"),
+        (
+            lambda: safe_distance("light", "mild", reading="loose"),
+            "reading must be one of 'table', 'physical', got 'loose'",
+        ),
         (
             lambda: safe_distance(
                 "heavy", "mild", reading="physical", uav=UAV(**(vars(LIGHT_QUADROTOR) | {"thrust": 20.0}))
             ),
             "thrust 20 N can't lift",
         ),
-        (lambda: gust_offset(LIGHT_QUADROTOR, -1.0), "wind must be finite and at least 0, got -1"),
-        (lambda: gust_offset(LIGHT_QUADROTOR, (3.0, 4.0)), "wind must be one number"),
+        (lambda: gust_offset(LIGHT_QUADROTOR, -1.0), "wind_speed must be finite and at least 0, got -1"),
+        (lambda: gust_offset(LIGHT_QUADROTOR, (3.0, 4.0)), "wind_speed must be one number"),
         (lambda: load_class(-0.1), "payload must be finite and at least 0, got -0.1"),
-        (lambda: disturbance_class(np.nan), "wind must be finite and at least 0, got nan"),
+        (lambda: disturbance_class(np.nan), "wind_speed must be finite and at least 0, got nan"),
         (lambda: ConditionCheck(0.0), "predicted must be finite and above 0, got 0"),
         (lambda: ConditionCheck(3.0, step=-1), "step must be finite and above 0, got -1"),
         (lambda: ConditionCheck(3.0, hold=np.inf), "hold must be finite and above 0, got inf"),

@@ -10,11 +10,12 @@ import umsgpack
 
 from uavlab import plot, scene
 from uavlab.city import Building, City, NoFlyZone
-from uavlab.flight import OffsetProcess, Wind, fly
+from uavlab.flight import OffsetProcess, fly
 from uavlab.planners import astar, repare, shortcut
 from uavlab.risk import RiskMap, reference_campus
 from uavlab.route import Route
 from uavlab.vehicle import LIGHT_QUADROTOR
+from uavlab.weather import Wind
 
 START, GOAL = (90, 18, 30), (20, 75, 75)
 

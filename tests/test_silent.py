@@ -10,7 +10,7 @@ from scipy.stats import norm
 
 from uavlab import scene
 from uavlab.city import City
-from uavlab.flight import Autopilot, OffsetProcess, Wind, fly, monte_carlo
+from uavlab.flight import Autopilot, OffsetProcess, fly, monte_carlo
 from uavlab.offsets import crossing_rate, joint, magnitude
 from uavlab.optimizers import bas, pso, pso_bas
 from uavlab.planners import (
@@ -31,7 +31,7 @@ from uavlab.scene import tube
 from uavlab.spline import Curve, basis_functions, feasibility
 from uavlab.spline.basis import fitted, subdivided
 from uavlab.vehicle import LIGHT_QUADROTOR, RISK_QUADROTOR, UAV
-from uavlab.weather import Weather, lift_margin, rain_force, reference_wind, wind_drag
+from uavlab.weather import Weather, Wind, lift_margin, rain_force, reference_wind, wind_drag
 
 OPEN = City(np.zeros((20, 20, 10), bool))
 ENDS = (1.5, 1.5, 5.5), (18.5, 18.5, 5.5)
@@ -58,7 +58,7 @@ SCALED = {
     "penalty_zone": lambda x: penalty_zone(OPEN, x, penalty=x),
     "astar": lambda x: astar(OPEN, *ENDS, min_clearance=x / 10, max_height=x).length,
     "least_risk": lambda x: least_risk(FLAT, *ENDS, length_weight=x, max_length=x * 10).cost,
-    "feasibility": lambda x: feasibility(Curve(ENDS), LIGHT_QUADROTOR, OPEN, speed=x)["tilt"].worst,
+    "feasibility": lambda x: feasibility(Curve(ENDS), OPEN, LIGHT_QUADROTOR, speed=x)["tilt"].worst,
     "fly": lambda x: fly(LINE, OPEN, LIGHT_QUADROTOR, Wind(), Autopilot(speed=x / 3), rng=1).duration,
 }
 
@@ -83,7 +83,7 @@ FLAGGED = {
     "repare": lambda flag: repare(OPEN, *ENDS, as_printed=flag),
     "ant_colony": lambda flag: ant_colony(FLAT, *ENDS, rng=0, budget=20, as_printed=flag),
     "waypoint_swarm": lambda flag: waypoint_swarm(FLAT, *ENDS, rng=0, budget=400, as_printed=flag),
-    "feasibility": lambda flag: feasibility(Curve(ENDS), LIGHT_QUADROTOR, OPEN, as_printed=flag),
+    "feasibility": lambda flag: feasibility(Curve(ENDS), OPEN, LIGHT_QUADROTOR, as_printed=flag),
     "basis_functions": lambda flag: basis_functions(0.5, [0, 0, 1, 1], 1, as_printed=flag),
     **{
         search.__name__: lambda flag, search=search: search(

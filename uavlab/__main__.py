@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from uavlab import __version__
-from uavlab.report import Conditions, Trial, grounded_page, report
+from uavlab.report import Premises, Trial, grounded_page, report
 
 if TYPE_CHECKING:  # imported late, so that --help answers at once
     from uavlab.city import City
@@ -194,21 +194,21 @@ def run(options: argparse.Namespace) -> int:
     city, risk_map = load_city(options)
     if city.source is not None:
         print(city.source)
-    conditions = conditions_of(options, risk_map)
-    if conditions.grounded:
-        print(f"grounded: {conditions.grounded}")
-        write(options.out, grounded_page(city, conditions))
+    premises = premises_of(options, risk_map)
+    if premises.grounded:
+        print(f"grounded: {premises.grounded}")
+        write(options.out, grounded_page(city, premises))
         print(f"{time.perf_counter() - began:.1f} s; open {options.out.resolve()}")
         return 1
     tell_effort(city, planner_of(options, risk_map))
     heights = heights_of(options, risk_map)
     asked = (position_of(options, city, name) for name in ("start", "goal"))
-    usual = default_flight(city, conditions.clearance, heights)
+    usual = default_flight(city, premises.safe_distance, heights)
     start, goal = (default if point is None else point for point, default in zip(asked, usual, strict=True))
-    routes, risk_map = plan(options, city, risk_map, start, goal, conditions.clearance, heights)
+    routes, risk_map = plan(options, city, risk_map, start, goal, premises.safe_distance, heights)
     above_roofs = 0.0 if risk_map is None else risk_map.safe_height
-    trial = try_out(routes[0], city, conditions, heights, above_roofs, options.flights, options.seed)
-    page = report(city, routes, start, goal, conditions, trial, risk_map)
+    trial = try_out(routes[0], city, premises, heights, above_roofs, options.flights, options.seed)
+    page = report(city, routes, start, goal, premises, trial, risk_map)
     write(options.out, page)
     print(f"{routes[0].planner}: {routes[0].length:.1f} m" if routes[0].reached else f"not reached: {routes[0].reason}")
     for line in trial.lines():
@@ -297,12 +297,11 @@ def position_of(options: argparse.Namespace, city: City, name: str) -> np.ndarra
     return point
 
 
-def conditions_of(options: argparse.Namespace, risk_map: RiskMap | None) -> Conditions:
+def premises_of(options: argparse.Namespace, risk_map: RiskMap | None) -> Premises:
     """From weather and load to the offset to be survived, and the distance to keep (REPARE Eqs 3, 5 and 7)."""
-    from uavlab.flight import Wind
-    from uavlab.resilience import physical_distance
+    from uavlab.resilience import safe_distance
     from uavlab.vehicle import LIGHT_QUADROTOR
-    from uavlab.weather import Weather, grounded_by
+    from uavlab.weather import Weather, Wind, grounded_by
 
     if options.city == "campus" and risk_map is not None:
         uav = risk_map.uav.loaded(options.payload or 0.0)
@@ -312,10 +311,10 @@ def conditions_of(options: argparse.Namespace, risk_map: RiskMap | None) -> Cond
     wind = Wind.from_weather(weather)
     reasons = grounded_by(uav, weather)
     if reasons:
-        return Conditions(uav, wind, weather.reference_wind.gust, np.inf, np.inf, "; ".join(reasons))
-    needed = physical_distance(uav, wind.speed)
+        return Premises(uav, wind, weather.reference_wind.gust, np.inf, np.inf, "; ".join(reasons))
+    needed = safe_distance(uav.payload, weather, reading="physical", uav=uav)
     clearance = needed if options.clearance is None else options.clearance
-    return Conditions(uav, wind, weather.reference_wind.gust, (needed - uav.diameter / 2) / 3, clearance, "")
+    return Premises(uav, wind, weather.reference_wind.gust, (needed - uav.diameter / 2) / 3, clearance, "")
 
 
 def plan(
@@ -341,7 +340,7 @@ def plan(
 def try_out(
     route: Route,
     city: City,
-    conditions: Conditions,
+    premises: Premises,
     heights: dict[str, Any],
     safe_height: float,
     flights: int,
@@ -353,13 +352,13 @@ def try_out(
 
     if not route.reached:
         return Trial("there is no route")
-    uav, wind = conditions.uav, conditions.wind
+    uav, wind = premises.uav, premises.wind
     try:
-        curve = smooth(route, city, uav, min_clearance=conditions.clearance, **heights)
+        curve = smooth(route, city, uav, min_clearance=premises.safe_distance, **heights)
     except ValueError as error:
         return Trial(str(error))
     speed = min(greatest_speed(curve, uav, wind.mean), uav.cruise_speed) or uav.cruise_speed
-    limits = feasibility(curve, uav, city, speed=speed, wind=wind.mean, safe_height=safe_height, **heights)
+    limits = feasibility(curve, city, uav, speed=speed, wind=wind.mean, safe_height=safe_height, **heights)
     trial = Trial("", curve, limits)
     if flights == 0:
         return trial
@@ -371,7 +370,7 @@ def try_out(
     tell(f"flying {flights:,} times, in these gusts and with the offsets planned for", seconds)
     flown, as_planned = (
         monte_carlo(curve, city, uav, gusts, autopilot, rng=seed, flights=flights, progress=seconds > LONG)
-        for gusts in (wind, OffsetProcess(conditions.sigma))
+        for gusts in (wind, OffsetProcess(premises.sigma))
     )
     return trial._replace(flight=flight, flights=flown, as_planned=as_planned)
 

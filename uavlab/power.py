@@ -17,15 +17,13 @@ from uavlab import checks
 from uavlab.compiled import compiled
 from uavlab.vehicle import INDUCED, STANDARD_AIR, UAV
 from uavlab.weather import ground_speed_held, rain_force, wind_drag
+from uavlab.weather.envelope import CREEP
 
 BLADE_LOADING = 0.012
 """Thrust coefficient T/(ρ A U²), tip speed U; of small rotors 0.01 to 0.015, whatever they pull, as U follows."""
 
 ADVANCE = 4.65
 """By how much the drag of blades grows with the square of the advance ratio V/U (Leishman 2006, 5.4)."""
-
-CREEP = 0.1
-"""Who is slower than this over ground gets nowhere [m/s]."""
 
 NEWTON = 12
 """Steps of Newton's method at most; four or five are enough."""

@@ -17,21 +17,22 @@ from uavlab.vehicle import WATT_HOUR
 
 if TYPE_CHECKING:  # imported late, so that --help answers at once
     from uavlab.city import City
-    from uavlab.flight import Flight, Flights, Wind
+    from uavlab.flight import Flight, Flights
     from uavlab.risk import RiskMap
     from uavlab.route import Route
     from uavlab.spline import Curve, Feasibility
     from uavlab.vehicle import UAV
+    from uavlab.weather import Wind
 
 
-class Conditions(NamedTuple):
+class Premises(NamedTuple):
     """Who flies in what, and how far it has to keep from walls."""
 
     uav: UAV
     wind: Wind
     gust: float
     sigma: float
-    clearance: float
+    safe_distance: float
     grounded: str
 
 
@@ -72,7 +73,7 @@ def report(
     routes: list[Route],
     start: np.ndarray,
     goal: np.ndarray,
-    conditions: Conditions,
+    premises: Premises,
     trial: Trial,
     risk_map: RiskMap | None,
 ) -> str:
@@ -82,7 +83,7 @@ def report(
     from uavlab import plot, scene
 
     drawn = routes if trial.curve is None else [trial.curve.route(city.cell), *routes[1:]]
-    ball = conditions.clearance if conditions.clearance > 0 else None
+    ball = premises.safe_distance if premises.safe_distance > 0 else None
     flights = {} if trial.flight is None else {f"{drawn[0].planner}, flown in these gusts": trial.flight}
     shown = drawn[1:] if flights else drawn  # the track covers its curve
     in_colours = [*drawn[1:], drawn[0]] if flights else drawn  # of the scene, where flights come after routes
@@ -91,10 +92,10 @@ def report(
         profile = plot.profile(city, *in_colours, safe_distance=ball)
         profile.savefig(picture, format="svg", metadata={"Date": None})
     drawing = base64.b64encode(picture.getvalue()).decode()
-    measured = conditions_table(conditions) + table(city, routes[0], start, goal)
+    measured = premises_table(premises) + table(city, routes[0], start, goal)
     if risk_map is not None:
         measured += risk_table(risk_map, routes, trial.curve)
-    measured += trial_table(trial, conditions)
+    measured += trial_table(trial, premises)
     rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in measured)
     read = "" if city.source is None else f"<h2>What was read</h2>{city.source._repr_html_()}"
     limits = ""
@@ -111,37 +112,37 @@ def report(
     )
 
 
-def grounded_page(city: City, conditions: Conditions) -> str:
+def grounded_page(city: City, premises: Premises) -> str:
     """The page where nothing flies: so that no older one seems to be the answer."""
-    measured = [*conditions_table(conditions), ("grounded", html.escape(conditions.grounded))]
+    measured = [*premises_table(premises), ("grounded", html.escape(premises.grounded))]
     rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in measured)
     return GROUNDED.format(title=html.escape(f"Grounded in {city.name}"), rows=rows, version=__version__)
 
 
-def conditions_table(conditions: Conditions) -> list[tuple[str, str]]:
+def premises_table(premises: Premises) -> list[tuple[str, str]]:
     """Weather, vehicle, and what they ask for, as name and value."""
-    uav, wind = conditions.uav, conditions.wind
+    uav, wind = premises.uav, premises.wind
     rain = f", {wind.rain_mm_per_h:g} mm/h of rain" if wind.rain_mm_per_h else ""
     rows = [
         ("the UAV", f"{uav.name}, with a load of {uav.payload:g} kg"),
-        ("weather", f"wind of {wind.speed:.1f} m/s, gusts up to {conditions.gust:.1f} m/s{rain}"),
+        ("weather", f"wind of {wind.speed:.1f} m/s, gusts up to {premises.gust:.1f} m/s{rain}"),
     ]
-    if not conditions.grounded:
+    if not premises.grounded:
         rows += [
-            ("offsets to be survived", f"{3 * conditions.sigma:.1f} m (σ = {conditions.sigma:.2f} m)"),
-            ("distance to keep", f"{conditions.clearance:g} m"),
+            ("offsets to be survived", f"{3 * premises.sigma:.1f} m (σ = {premises.sigma:.2f} m)"),
+            ("distance to keep", f"{premises.safe_distance:g} m"),
         ]
     return [(name, html.escape(value)) for name, value in rows]
 
 
-def trial_table(trial: Trial, conditions: Conditions) -> list[tuple[str, str]]:
+def trial_table(trial: Trial, premises: Premises) -> list[tuple[str, str]]:
     """What became of the curve and its flights, as name and value."""
     from uavlab.flight import crash_rate
 
     rows = []
     if trial.curve is not None and trial.limits is not None:
         repair = f"{trial.curve.info['rounds']} rounds of repair" if trial.curve.info["rounds"] else "no repair needed"
-        speed, cruise = trial.limits.speed, conditions.uav.cruise_speed
+        speed, cruise = trial.limits.speed, premises.uav.cruise_speed
         slowed = f"; its cruise speed of {cruise:g} m/s breaks limits" if speed < cruise else ""
         kept = "all limits kept" if trial.limits.feasible else "beyond the limits of " + ", ".join(trial.exceeded())
         rows += [
@@ -157,8 +158,8 @@ def trial_table(trial: Trial, conditions: Conditions) -> list[tuple[str, str]]:
             ("offsets in these gusts", f"σ {across:.2f} m across the route, {up:.2f} m up and down"),
             ("nearest to an obstacle", f"{flights.clearance.min():.2f} m from the centre of the body"),
             ("time", f"{flights.duration.mean():.0f} s"),
-            ("energy", energy_used(flights, conditions.uav)),
-            (f"crashes with σ = {conditions.sigma:.2f} m", str(crash_rate(trial.as_planned))),
+            ("energy", energy_used(flights, premises.uav)),
+            (f"crashes with σ = {premises.sigma:.2f} m", str(crash_rate(trial.as_planned))),
         ]
     if trial.problem:
         rows.append(("not flown", trial.problem))

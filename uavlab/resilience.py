@@ -15,7 +15,9 @@ import numpy as np
 from uavlab import checks
 from uavlab.offsets import minimum_safe_distance
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
-from uavlab.weather import wind_drag
+from uavlab.weather import Weather, Wind, wind_drag
+from uavlab.weather.forces import GUST_FACTOR
+from uavlab.weather.wind import wind_of
 
 LOADS = {"dead": 0.0, "light": 0.25, "moderate": 0.6, "heavy": 1.0}
 """Payload of each class of load [kg]. REPARE names the classes of Table 3 only; the masses are ours."""
@@ -33,7 +35,6 @@ TABLE3 = {
 }
 """REPARE Table 3: the resilience factor by disturbance (row) and load (column, in the order of `LOADS`)."""
 
-GUST_FACTOR = 1.75
 STILL_OFFSET, STIFFNESS = 1.0, 8.5
 """ξ₀ and the offset at which gusts eat the whole thrust reserve [m]; fitted to REPARE Table 4."""
 
@@ -62,20 +63,25 @@ def resilience_level(load: str, disturbance: str) -> str:
     ]
 
 
-def safe_distance(load: str, disturbance: str, *, reading: str = "table", uav: UAV = LIGHT_QUADROTOR) -> float:
+def safe_distance(
+    load: str | float, disturbance: str | Wind | Weather, *, reading: str = "table", uav: UAV = LIGHT_QUADROTOR
+) -> float:
     """Minimum safe distance D_min for a load and a disturbance (REPARE Table 4).
 
     Parameters
     ----------
-    load : {"dead", "light", "moderate", "heavy"}
-    disturbance : {"none", "mild", "moderate", "heavy"}
+    load : {"dead", "light", "moderate", "heavy"} or float
+        Class of the payload, or the payload itself [kg].
+    disturbance : {"none", "mild", "moderate", "heavy"}, Wind or Weather
+        Class of the mean wind, or what the air does. Wind beyond the heaviest class needs more room than it, by the
+        physical reading.
     reading : {"table", "physical"}
         Table 4 has three cases, and D_min is no function of the factor in Table 3: two "advanced" cases differ.
         "table": D_min = 2 + L/2 + D with the numbers L, D = 0 … 3 of the classes, which gives the three.
         "physical": D_min = ξ + D_uav/2 with ξ = ⌈ξ₀ + 8.5 m·F_gust/√(T² − (m g)²)⌉, the drag of the gusts over the
         thrust that the load leaves; it gives them too, and says why a heavy load needs more room.
     uav : UAV
-        For "physical"; without its payload, which the class of load replaces.
+        For "physical"; its payload is replaced by `load`.
 
     Returns
     -------
@@ -87,21 +93,39 @@ def safe_distance(load: str, disturbance: str, *, reading: str = "table", uav: U
     ValueError
         If a class or reading is unknown, or the load can't be lifted.
     """
-    checks.one_of("load", load, LOADS)
-    checks.one_of("disturbance", disturbance, DISTURBANCES)
+    checks.one_of("reading", reading, ("table", "physical"))
+    payload = payload_of(load)
+    kind, wind_speed = kind_and_speed(disturbance)
+    in_table = 0.0
     if reading == "table":
-        return 2.0 + 0.5 * list(LOADS).index(load) + list(DISTURBANCES).index(disturbance)
-    if reading != "physical":
-        raise ValueError(f"reading must be 'table' or 'physical', got {reading!r}")
-    return physical_distance(uav.loaded(LOADS[load]), DISTURBANCES[disturbance])
+        in_table = 2.0 + 0.5 * list(LOADS).index(load_class(payload)) + list(DISTURBANCES).index(kind)
+        if wind_speed <= DISTURBANCES[kind]:
+            return in_table
+    loaded = uav.loaded(payload)
+    needed = minimum_safe_distance(np.ceil(gust_offset(loaded, wind_speed) - 1e-9), loaded.diameter)
+    return max(float(needed), in_table)
 
 
-def physical_distance(uav: UAV, wind: float) -> float:
-    """D_min [m] of a UAV with its payload in a mean wind [m/s], its offset rounded up to whole metres."""
-    return float(minimum_safe_distance(np.ceil(gust_offset(uav, wind) - 1e-9), uav.diameter))
+def payload_of(load: str | float) -> float:
+    """The payload [kg] of a class of load, or itself."""
+    if isinstance(load, str):
+        return LOADS[checks.one_of("load", load, LOADS)]
+    return checks.not_negative_number("load", load)
 
 
-def gust_offset(uav: UAV, wind: float) -> float:
+def kind_and_speed(disturbance: str | Wind | Weather, name: str = "disturbance") -> tuple[str, float]:
+    """Class of a disturbance and its mean wind [m/s]; of a class the strongest that it covers."""
+    if isinstance(disturbance, str):
+        return checks.one_of(name, disturbance, DISTURBANCES), DISTURBANCES[disturbance]
+    if not isinstance(disturbance, Wind | Weather):
+        raise ValueError(
+            f"{name} must be one of {', '.join(map(repr, DISTURBANCES))}, a Wind or a Weather, got {disturbance!r:.60}"
+        )
+    speed = wind_of(disturbance).speed
+    return disturbance_class(speed), speed
+
+
+def gust_offset(uav: UAV, wind_speed: float) -> float:
     """Offset ξ₀ + 8.5 m·F_gust/reserve [m] of a UAV in a mean wind [m/s], before it is rounded up.
 
     Raises
@@ -109,13 +133,13 @@ def gust_offset(uav: UAV, wind: float) -> float:
     ValueError
         If the wind is negative or not finite.
     """
-    checks.not_negative_number("wind", wind)
-    return float(STILL_OFFSET + STIFFNESS * gust_force(uav, wind) / uav.horizontal_reserve())
+    checks.not_negative_number("wind_speed", wind_speed)
+    return float(STILL_OFFSET + STIFFNESS * gust_force(uav, wind_speed) / uav.horizontal_reserve())
 
 
-def gust_force(uav: UAV, wind: float) -> float:
+def gust_force(uav: UAV, wind_speed: float) -> float:
     """Drag of the strongest gusts on a UAV that holds its place in a mean wind [m/s], in newtons."""
-    return float(wind_drag((GUST_FACTOR * wind, 0.0), (0.0, 0.0), uav.drag_area)[0])
+    return float(wind_drag((GUST_FACTOR * wind_speed, 0.0), (0.0, 0.0), uav.drag_area)[0])
 
 
 def load_class(payload: float) -> str:
@@ -133,7 +157,7 @@ def load_class(payload: float) -> str:
     return name
 
 
-def disturbance_class(wind: float) -> str:
+def disturbance_class(wind_speed: float) -> str:
     """The mildest class of disturbance that covers a mean wind [m/s]; "heavy" for any stronger one.
 
     Raises
@@ -141,8 +165,8 @@ def disturbance_class(wind: float) -> str:
     ValueError
         If the wind is negative or not a number.
     """
-    checks.not_negative_number("wind", wind)
-    return next((name for name, upper in DISTURBANCES.items() if wind <= upper), "heavy")
+    checks.not_negative_number("wind_speed", wind_speed)
+    return next((name for name, upper in DISTURBANCES.items() if wind_speed <= upper), "heavy")
 
 
 class Change(NamedTuple):

@@ -6,7 +6,7 @@ import csv
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -29,6 +29,21 @@ def check_promises(of: Any) -> None:
 def promises_of(one: Any, **instead: float | None) -> dict[str, Any]:
     """What a route or a curve promises, but for what is asked for instead; None asks for nothing."""
     return {name: getattr(one, name) if instead.get(name) is None else instead[name] for name in PROMISES}
+
+
+def as_route(way: Route | Way, name: str = "route") -> Route:
+    """What is drawn, measured or flown as a route: itself, or a curve's points, joined by straight legs."""
+    made: Any = way
+    if not isinstance(way, type) and callable(getattr(way, "route", None)):
+        made = made.route()
+    checks.instance(name, made, Route)
+    return made
+
+
+class Way(Protocol):
+    """What can be made a route, such as a `uavlab.spline.Curve`."""
+
+    def route(self) -> Route: ...
 
 
 @dataclass(frozen=True, eq=False)

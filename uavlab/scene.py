@@ -63,7 +63,7 @@ class Scene:
 
 def show(
     city: City,
-    *routes: Route,
+    *routes: plot.Drawn,
     safe_distance: float | None = None,
     expansion: bool = False,
     risk: RiskMap | None = None,
@@ -88,7 +88,7 @@ def show(
 
 def page(
     city: City,
-    *routes: Route,
+    *routes: plot.Drawn,
     safe_distance: float | None = None,
     expansion: bool = False,
     risk: RiskMap | None = None,
@@ -105,8 +105,9 @@ def page(
     city : City
         Drawn from its buildings, roofs included; from its voxels where it knows no buildings. Its ground is a surface
         with a grid on it, no-fly zones are prisms that one can look through.
-    routes : Route
-        Drawn as tubes, each in a colour of its own; routes that didn't arrive are named in the legend.
+    routes : Route or Curve, or mapping
+        By name if it is a mapping. Drawn as tubes, each in a colour of its own; routes that didn't arrive are named in
+        the legend.
     safe_distance : float, optional
         Radius of a ball around each UAV [m]: the clearance it should keep.
     expansion : bool
@@ -132,13 +133,13 @@ def page(
         If `expansion` is asked for without a route that recorded its order or together with flights, `safe_distance`
         is not above 0, `slice_height` lies outside of the map, or there is no `risk` to slice.
     """
-    plot.check_drawn(city, routes, risk)
+    planned = plot.drawn_routes(city, routes, risk)
     if slice_height is not None and risk is None:
         raise ValueError("slice_height needs risk=..., the map to cut")
     if safe_distance is not None:
         checks.positive_number("safe_distance", safe_distance)
         safe_distance = float(safe_distance)  # the viewer's commands take no NumPy scalars
-    if expansion and not (routes and "order" in routes[0].info):
+    if expansion and not (planned and "order" in planned[0].info):
         raise ValueError("expansion needs a first route planned with record=True")
     named = plot.named_flights(flights)
     if expansion and named:
@@ -152,22 +153,22 @@ def page(
     if risk is not None:
         draw_risk(scene["risk"], risk, slice_height)
     animation = Animation(default_framerate=FRAMES_PER_SECOND)
-    colors = plot.route_colors(len(routes) + len(named))
-    for number, (route, color) in enumerate(zip(routes, colors, strict=False)):
+    colors = plot.route_colors(len(planned) + len(named))
+    for number, (route, color) in enumerate(zip(planned, colors, strict=False)):
         if len(route.points) > 1:
             draw_route(scene[f"route{number}"], city, route, color, thin=bool(named))
     flown = {name: flight for name, flight in named.items() if len(flight.log) > 1}
     longest = max((flight.duration for flight in flown.values()), default=0.0)
-    for number, (name, color) in enumerate(zip(named, colors[len(routes) :], strict=True)):
+    for number, (name, color) in enumerate(zip(named, colors[len(planned) :], strict=True)):
         if name in flown:
             animate_flight(scene[f"flight{number}"], city, flown[name], color, longest, safe_distance, animation)
     if expansion:
-        animate_expansion(scene["expansion"], city, routes[0].info["order"], animation)
-    elif not named and routes and len(routes[0].points) > 1:
-        animate_route(scene["uav"], city, routes[0], safe_distance, animation)
+        animate_expansion(scene["expansion"], city, planned[0].info["order"], animation)
+    elif not named and planned and len(planned[0].points) > 1:
+        animate_route(scene["uav"], city, planned[0], safe_distance, animation)
     if animation.clips:
         scene.set_animation(animation, repetitions=1000)
-    return window.page(title or city.name, legend(city, routes, named, risk))
+    return window.page(title or city.name, legend(city, planned, named, risk))
 
 
 def legend(city: City, routes: tuple[Route, ...], flights: Mapping[str, Flight], risk: RiskMap | None = None) -> str:

@@ -17,20 +17,19 @@
 # stands in their place.
 
 # %%
-from dataclasses import replace
 
 import numpy as np
 
 from uavlab import plot, scene
 from uavlab.city import table1_city
-from uavlab.flight import OffsetProcess, Wind, crash_rate, fly, monte_carlo
+from uavlab.flight import OffsetProcess, crash_rate, fly, monte_carlo
 from uavlab.offsets import minimum_safe_distance
 from uavlab.planners import astar, least_risk, shortcut
 from uavlab.prediction import OffsetPredictor, make_dataset
 from uavlab.risk import CAMPUS_FLIGHT, reference_campus
 from uavlab.spline import feasibility, smooth
 from uavlab.vehicle import LIGHT_QUADROTOR
-from uavlab.weather import Weather, rain_force, wind_drag
+from uavlab.weather import Weather, Wind, rain_force, wind_drag
 
 # %% [markdown]
 # ## The weather
@@ -149,7 +148,7 @@ scene.show(city, straight, shortest, safe_distance=safe_distance)
 # NBVAL_CHECK_OUTPUT
 curve = smooth(straight, city, uav)
 wind = Wind.from_weather(weather)
-report = feasibility(curve, uav, city, wind=wind.mean)
+report = feasibility(curve, city, uav, wind=wind.mean)
 print(f"{curve.length:.1f} m, {curve.info['rounds']} rounds of repair")
 print(report)
 assert report.feasible
@@ -199,7 +198,6 @@ scene.show(city, flights={"safe curve": arrival, "shortest route": crash})
 # NBVAL_CHECK_OUTPUT
 campus = reference_campus()
 across = least_risk(campus, *CAMPUS_FLIGHT, length_weight=1)  # a metre outweighs all risk
-across = replace(across, planner="safest of the shortest")
 around = least_risk(campus, *CAMPUS_FLIGHT, max_length=1.08 * across.length)  # only the risk counts
 for route in (across, around):
     print(f"{route.length:.1f} m, {campus.fatalities(route):.1e} deaths per flight")
@@ -208,7 +206,7 @@ print(f"{saved:.0%} less risk for {around.length / across.length - 1:.1%} more w
 
 # %%
 assert saved > 0.8
-scene.show(campus.city, around, across, risk=campus)
+scene.show(campus.city, around, {"safest of the shortest": across}, risk=campus)
 
 # %% [markdown]
 # Bright ground is where a fall would cost most, on a scale of factors. How such a map is made, what its numbers mean

@@ -307,7 +307,7 @@ def section_at(height):
 def accepted_by_ring(radius, thickness):
     """Smallest clearance [m] that a ring calls free of risk, in front of a wall this thick [m]."""
     wall = City(np.pad(np.ones((thickness, 41, 41), dtype=bool), ((0, 20), (0, 0), (0, 0))))
-    risky = penalty_zone(wall, radius + 0.5, penalty=1.0, shape="ring") > 1
+    risky = penalty_zone(wall, radius + 0.5, penalty=1.0, zone="ring") > 1
     return float(wall.clearance[:, 20, 20][~risky[:, 20, 20]].min())
 
 
@@ -340,7 +340,7 @@ for radius in (3, 4, 5):
 ring_zones, missed, added, kept = {}, {}, {}, {}
 print("radius  ball     ring misses  ring adds  clearance that the ring accepts")
 for r in range(1, 9):
-    ring = ring_zones[r] = (penalty_zone(city, r + 0.5, penalty=1.0, shape="ring") > 1) & free
+    ring = ring_zones[r] = (penalty_zone(city, r + 0.5, penalty=1.0, zone="ring") > 1) & free
     ball = (penalty_zone(city, r + 0.5, penalty=1.0) > 1) & free
     missed[r], added[r] = (ball & ~ring).sum() / ball.sum(), (ring & ~ball).sum() / ball.sum()
     kept[r] = city.clearance[free & ~ring].min()
@@ -652,8 +652,7 @@ assert above["10 to 30 m above ground"].min() >= 10
 assert above["10 to 30 m above ground"].max() <= 30
 assert legal.takeoff > 0 < legal.landing
 named = {"10 to 30 m above ground": legal, "with the hill": seeing, "without the hill": blind}
-drawn = [replace(route, planner=name) for name, route in named.items()]
-plot.profile(valley, *drawn)
+plot.profile(valley, named)
 
 # %% [markdown]
 # Each route has its own hill here, since the axis is the distance flown: who flies a longer way meets the top later. A
@@ -669,7 +668,7 @@ plot.profile(valley, *drawn)
 # The same in 3D:
 
 # %%
-scene.show(valley, *drawn)
+scene.show(valley, named)
 
 # %% [markdown]
 # ## A real city
@@ -872,7 +871,7 @@ print(f"the same clearance: {np.array_equal(closed.clearance, quarter.clearance)
 assert np.array_equal(closed.clearance, quarter.clearance)
 assert not lake.polygon.buffer(-0.01).intersects(shapely.LineString(ways["lake closed"].points[:, :2]))
 folder.cleanup()
-plot.section(closed, 9.0, None, *(replace(way, planner=name) for name, way in ways.items()))
+plot.section(closed, 9.0, None, ways)
 
 # %% [markdown]
 # ### Roofs and voxels from files

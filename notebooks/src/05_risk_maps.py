@@ -809,8 +809,7 @@ plot.finished(figure)
 # A planner that knows of it does better by a factor of 15 in the median.
 
 # %%
-both_optima = replace(drift_aware, planner="drift-aware"), replace(safest, planner="drift-blind")
-scene.show(campus.city, *both_optima, risk=campus)
+scene.show(campus.city, {"drift-aware": drift_aware, "drift-blind": safest}, risk=campus)
 
 # %% [markdown]
 # ## A city of your own

@@ -21,7 +21,6 @@
 import heapq
 import math
 import time
-from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -298,11 +297,7 @@ def way_to(parent, node):
 
 worst = int(excess.argmax())
 nodes = way_to(hurried[worst][1], ends[worst][1])
-plot.profile(
-    coarse,
-    replace(routes[worst], points=coarse.center_of(nodes), planner="estimate 1.5 times too high"),
-    replace(routes[worst], planner="octile estimate"),
-)
+plot.profile(coarse, {"estimate 1.5 times too high": Route(coarse.center_of(nodes)), "octile estimate": routes[worst]})
 
 # %% [markdown]
 # The hurried search climbs to the goal's height at once, as if nothing were in between. Then it has to dive below the
@@ -392,23 +387,22 @@ scene.show(city, flooding, expansion=True)
 # %%
 # NBVAL_CHECK_OUTPUT
 safe_distance = 3.5
-shortest = replace(astar(city, notch, middle), planner="shortest")
-priced = replace(
-    astar(city, notch, middle, price=penalty_zone(city, safe_distance, penalty=0.5)), planner="with a penalty zone"
-)
-for route in (shortest, priced):
-    print(f"{route.planner:<19} {route.length:.2f} m, smallest clearance {route.clearance(city):.1f} m")
+shortest = astar(city, notch, middle)
+priced = astar(city, notch, middle, price=penalty_zone(city, safe_distance, penalty=0.5))
+both = {"shortest": shortest, "with a penalty zone": priced}
+for name, route in both.items():
+    print(f"{name:<19} {route.length:.2f} m, smallest clearance {route.clearance(city):.1f} m")
 assert math.isclose(priced.length, 71.213, abs_tol=5e-4)
 assert (shortest.clearance(city), priced.clearance(city)) == (0.5, 3.5)
 
 # %%
-plot.profile(city, shortest, priced, safe_distance=safe_distance)
+plot.profile(city, both, safe_distance=safe_distance)
 
 # %% [markdown]
 # Seven per cent more length buys seven times the clearance.
 
 # %%
-scene.show(city, priced, shortest, safe_distance=safe_distance)
+scene.show(city, dict(reversed(both.items())), safe_distance=safe_distance)
 
 # %% [markdown]
 # ## Why the printed cost is no cost of a route
@@ -492,7 +486,7 @@ def there_and_back(price, **options):
 
 printed, gap = {}, {}
 for omega in (0.1, 0.2):
-    ring = penalty_zone(city, safe_distance, penalty=omega, shape="ring")
+    ring = penalty_zone(city, safe_distance, penalty=omega, zone="ring")
     printed[omega] = there_and_back(ring, as_printed=True, heuristic="euclidean")
     gap[omega] = np.array([abs(there.length - home.length) for there, home in printed[omega]])
     differ = gap[omega] > 1e-6
@@ -525,11 +519,10 @@ plot.finished(figure)
 # %%
 worst = int(gap[0.2].argmax())
 there, home = printed[0.2][worst]
-there, home = replace(there, planner="as printed, there"), replace(home, planner="as printed, back")
 print(f"clearance there {there.clearance(city):.1f} m, back {home.clearance(city):.1f} m")
 assert there.clearance(city) < safe_distance <= home.clearance(city)
 assert math.isclose(abs(there.length - home.length), gap[0.2].max())
-plot.plan(city, there, home)
+plot.plan(city, {"as printed, there": there, "as printed, back": home})
 
 # %% [markdown]
 # ## What does ω buy?
@@ -582,8 +575,8 @@ plot.finished(figure)
 @interact(omega=FloatSlider(0.5, min=0.0, max=1.0, step=0.05, description="ω", continuous_update=False))
 def draw(omega):
     price = penalty_zone(city, safe_distance, penalty=omega)
-    turned = replace(astar(city, notch, middle, price=price), planner=f"ω = {omega:.2f}")
-    return plot.profile(city, shortest, turned, safe_distance=safe_distance)
+    turned = {"shortest": shortest, f"ω = {omega:.2f}": astar(city, notch, middle, price=price)}
+    return plot.profile(city, turned, safe_distance=safe_distance)
 
 
 # %% [markdown]
@@ -606,7 +599,7 @@ for omega in (0.2, 0.3, 0.5, 2.0):
 
 # %%
 # NBVAL_CHECK_OUTPUT
-prices = {shape: penalty_zone(city, safe_distance, penalty=0.5, shape=shape) for shape in ("ball", "ring")}
+prices = {shape: penalty_zone(city, safe_distance, penalty=0.5, zone=shape) for shape in ("ball", "ring")}
 zones = {shape: (price > 1) & ~city.occupied for shape, price in prices.items()}
 missed = (zones["ball"] & ~zones["ring"]).sum() / zones["ball"].sum()
 added = (zones["ring"] & ~zones["ball"]).sum() / zones["ball"].sum()
@@ -616,7 +609,7 @@ for shape, price in prices.items():
     print(f"{shape}: {route.length:.2f} m, smallest clearance {route.clearance(city):.1f} m")
 pole = np.zeros((11, 11, 11), bool)
 pole[5, 5] = True
-beside = {shape: penalty_zone(City(pole), safe_distance, penalty=1.0, shape=shape)[6, 6, 5] for shape in zones}
+beside = {shape: penalty_zone(City(pole), safe_distance, penalty=1.0, zone=shape)[6, 6, 5] for shape in zones}
 print(f"price diagonally beside a pole: ball {beside['ball']:.0f}, ring {beside['ring']:.0f}")
 assert beside == {"ball": 2, "ring": 1}
 assert (round(missed, 3), round(added, 3)) == (0.008, 0.047)
@@ -698,13 +691,13 @@ plot.bars(means, "length, mean of 100 pairs [m]")
 # NBVAL_CHECK_OUTPUT
 price = penalty_zone(city, safe_distance, penalty=1.0)
 safe = shortcut(astar(city, notch, middle, price=price), city, price=price)
-for route in (shortest, priced, safe):
-    print(f"{route.planner:<19} {route.length:.2f} m, smallest clearance {route.clearance(city):.1f} m")
+for name, route in {**both, "A* + shortcut": safe}.items():
+    print(f"{name:<19} {route.length:.2f} m, smallest clearance {route.clearance(city):.1f} m")
 assert safe.clearance(city) >= safe_distance
 assert safe.length < 1.02 * shortest.length
 
 # %%
-plot.plan(city, shortest, priced, safe)
+plot.plan(city, both, safe)
 
 # %% [markdown]
 # ## Any angle in the search itself
@@ -731,8 +724,7 @@ assert again.mean() > 0.005
 
 # %%
 most = int(again.argmax())
-labelled = replace(straightened[most], planner="A* + shortcut"), any_angle[most]
-plot.plan(city, *labelled)
+plot.plan(city, {"A* + shortcut": straightened[most]}, any_angle[most])
 
 # %% [markdown]
 # The pair with the largest gain. Where the shortcut wins, it is by little. Nothing is exact here: any-angle shortest
@@ -764,7 +756,7 @@ assert [route.clearance(hall) for route in ways.values() if route.reached] == [0
 assert not ways["hard 3.5 m"].reached
 
 # %%
-plot.section(hall, 6.5, None, *(replace(route, planner=name) for name, route in ways.items()))
+plot.section(hall, 6.5, None, ways)
 
 # %% [markdown]
 # The soft zone is flat: half a metre from the frame is as dear as three. So with $\omega = 1$ the route takes the

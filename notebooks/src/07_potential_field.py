@@ -263,18 +263,18 @@ assert np.array_equal(again.points, curve.points)
 
 # %%
 # NBVAL_CHECK_OUTPUT
-trapped = replace(potential_field(city, notch, middle, record=True), planner="potential field, lattice")
+trapped = potential_field(city, notch, middle, record=True)
 drifting = potential_field(city, notch, middle, moves="continuous", record=True)
-drifting = replace(drifting, planner="potential field, continuous")
+both_fields = {"potential field, lattice": trapped, "potential field, continuous": drifting}
 way_out = astar(city, notch, middle)
-for route in (trapped, drifting):
-    print(f"{route.planner}: {route.reason}")
+for name, route in both_fields.items():
+    print(f"{name}: {route.reason}")
     assert not route.reached
 print(f"A*: {way_out.length:.1f} m")
 assert round(way_out.length, 1) == 66.4
 
 # %%
-plot.field(city, 30, middle, trapped, drifting, area=(66, 96, 12, 40), spacing=1.5)
+plot.field(city, 30, middle, both_fields, area=(66, 96, 12, 40), spacing=1.5)
 
 # %% [markdown]
 # Both end in the pond. Seen in space, with the way that A* finds (run the notebook and watch the UAV turn on the
@@ -284,20 +284,20 @@ plot.field(city, 30, middle, trapped, drifting, area=(66, 96, 12, 40), spacing=1
 first_visit = int(np.flatnonzero((trapped.points == trapped.points[-1]).all(axis=1))[0])
 cycle = trapped.points[first_visit:]
 endless = replace(trapped, points=np.vstack([trapped.points, *[cycle[1:]] * 11]))
-scene.show(city, endless, way_out)
+scene.show(city, {"potential field, lattice": endless}, way_out)
 
 # %% [markdown]
 # What happens there? Along the way, the sizes of pull, push and their vector sum, and the distance that is left:
 
 # %%
 figure, panels = plt.subplots(2, 2, figsize=(8.6, 5.0), dpi=plot.DPI, layout="constrained", sharex="col")
-for (above, below), route, shown in zip(panels.T, (trapped, drifting), (21, 90), strict=True):
+for (above, below), (title, route), shown in zip(panels.T, both_fields.items(), (21, 90), strict=True):
     pull, push = route.info["attraction"][:shown], route.info["repulsion"][:shown]
     curves = (("pull", pull, BLUE, "--"), ("push", push, ORANGE, "-"), ("sum", pull + push, BLACK, "-"))
     for name, force, color, style in curves:
         above.plot(np.linalg.norm(force, axis=1), color=color, linestyle=style, linewidth=1.2, label=name)
     below.plot(np.linalg.norm(route.points[:shown] - middle, axis=1), color=BLACK)
-    above.set_title(route.planner, fontsize=10)
+    above.set_title(title, fontsize=10)
     above.set_ylim(0, None)
     below.set(xlabel="step", ylabel="distance to the goal [m]")
     for axes in (above, below):
@@ -500,7 +500,7 @@ assert proven == 95
 # %%
 # NBVAL_CHECK_OUTPUT
 thousand = city.random_pairs(1000, 7, apart=40, min_clearance=4.5)
-zone = penalty_zone(city, 3.5, penalty=2.0, shape="ring")
+zone = penalty_zone(city, 3.5, penalty=2.0, zone="ring")
 plain = [astar(city, *pair) for pair in thousand]
 lengths = {
     "A*": np.array([route.length for route in plain]),
@@ -650,7 +650,7 @@ plot.finished(figure)
 
 # %%
 # NBVAL_CHECK_OUTPUT
-steps = np.array([route.info["steps"] for route in flown["lattice, conic, 5, 5 m"]])
+steps = np.array([route.info["expanded"] for route in flown["lattice, conic, 5, 5 m"]])
 expanded = np.array([route.info["expanded"] for route in plain])
 surface = city.occupied & ~ndimage.binary_erosion(city.occupied, np.ones((3, 3, 3)), border_value=1)
 looks = {
@@ -695,9 +695,8 @@ figure
     reach=FloatSlider(5.0, min=2.0, max=12.0, step=0.5, description="R [m]", continuous_update=False),
 )
 def draw(push, reach):
-    routes = [potential_field(city, *pair, push=push, reach=reach) for pair in ((start, goal), (notch, middle))]
-    named = zip(("flight", "notch"), routes, strict=True)
-    return plot.plan(city, *(replace(route, planner=name) for name, route in named))
+    pairs = {"flight": (start, goal), "notch": (notch, middle)}
+    return plot.plan(city, {name: potential_field(city, *pair, push=push, reach=reach) for name, pair in pairs.items()})
 
 
 # %% [markdown]

@@ -36,7 +36,7 @@ from uavlab.planners import astar, flight_conditions, hazard_astar, potential_fi
 from uavlab.resilience import DISTURBANCES, LOADS, ConditionCheck, Monitor, resilience_level, safe_distance
 from uavlab.route import Route
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
-from uavlab.weather import rain_force
+from uavlab.weather import Wind, rain_force
 
 # %%
 ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
@@ -176,7 +176,7 @@ wall = City(occupied, name="A wall")
 winds = {"towards the wall": (-9.0, 0.0), "along it": (0.0, 9.0), "away from it": (9.0, 0.0)}
 along = {}
 for name, wind in winds.items():
-    now = flight_conditions("light", wind)
+    now = flight_conditions("light", Wind(wind))
     priced = work_price(wall, now, (8.5, 1e9, 1.5))[0], size_price(wall, now), repare_price(wall, now)
     along[name] = [price[2:, 1, 1] for price in priced]
 distance = wall.clearance[2:, 1, 1]
@@ -255,7 +255,7 @@ def crashes(route, sigma, rng, speed=5.0, count=200, **where):
 # NBVAL_CHECK_OUTPUT
 drawn = city.random_pairs(150, 8, apart=40, min_clearance=8.0)
 blocked = [pair for pair in drawn if astar(city, *pair).clearance(city) <= 0.5][:40]
-now = flight_conditions("light", (9.0, 0.0, 0.0))
+now = flight_conditions("light", Wind((9.0, 0.0)))
 sigma = (now.safe_distance - 0.5) / 3
 prices = {"plain A*": None, "way 2": size_price(city, now), "way 3": repare_price(city, now)}
 routes = {name: [astar(city, *pair, price=price) for pair in blocked] for name, price in prices.items()}
@@ -291,7 +291,7 @@ print(f"way 1 is cut off at 0 in {np.mean([share for _, share in worked]):.1%} o
 assert expected > 3
 
 # %%
-plot.plan(city, *(replace(routes[name][0], planner=name) for name in ("plain A*", "way 3", "way 1")))
+plot.plan(city, {name: routes[name][0] for name in ("plain A*", "way 3", "way 1")})
 
 # %% [markdown]
 # Where the wall lies behind the UAV its push helps, the price is cut off at 0, and metres there are free. So way 1
@@ -317,16 +317,16 @@ def show_buildings(axes, level):
 
 
 mean = (2.0, 0.0, 0.0)
-mild = flight_conditions("light", (6.0, 0.0, 0.0))
-keep = mild.safe_distance + city.clearance - city.clearance_along(mean, at_most=10.0)
+mild = Wind((6.0, 0.0))
+keep = safe_distance("light", mild) + city.clearance - city.clearance_along(mean, at_most=10.0)
 inside = np.where(city.clearance < keep, keep, np.nan)
 pair = (2.5, 35.5, 30.5), (60.5, 50.5, 30.5)
 straight, widened = (
-    repare(city, *pair, disturbance=mild.wind),
-    repare(city, *pair, disturbance=mild.wind, mean_offset=mean),
+    repare(city, *pair, disturbance=mild),
+    repare(city, *pair, disturbance=mild, mean_offset=mean),
 )
-routes_drawn = replace(straight, planner="3.5 m all around"), replace(widened, planner="wider towards the wind")
-figure = plot.section(city, 30.5, inside, *routes_drawn, label="D_min in the zone [m]")
+both_zones = {"3.5 m all around": straight, "wider towards the wind": widened}
+figure = plot.section(city, 30.5, inside, both_zones, label="D_min in the zone [m]")
 show_buildings(figure.axes[0], 30)
 figure.axes[0].set_title("Zone in wind to the east, mean offset 2 m; 30.5 m above the ground", fontsize=10)
 figure
@@ -338,7 +338,7 @@ for push in (0.0, 1.0, 2.0):
     mean = (push, 0.0, 0.0)
     print(f"mean offset {push:g} m:", end="")
     for name, counted in (("3.5 m all around", (0.0, 0.0, 0.0)), ("widened", mean)):
-        flown = [repare(city, *pair, disturbance=mild.wind, mean_offset=counted) for pair in blocked]
+        flown = [repare(city, *pair, disturbance=mild, mean_offset=counted) for pair in blocked]
         seen[push, name] = 1000 * np.mean([touches(route, 1.0, mean=mean) for route in flown])
         print(f"  {name} {np.mean([r.length for r in flown]):.1f} m, {seen[push, name]:.1f} touches per 1000", end=";")
     print()
@@ -595,13 +595,13 @@ for name, (load, disturbance) in cases.items():
 
 # %%
 far = (20, 8, 20), (80, 95, 60)
-quiet = replace(repare(city, *far, disturbance="none"), planner="REPARE, no disturbance")
-calm = quiet, astar(city, *far), potential_field(city, *far)
-for route in calm:
-    print(f"{route.planner:<22} {route.length:.1f} m, smallest clearance {route.clearance(city):.1f} m")
-assert calm[1].length < calm[0].length < calm[2].length
-assert calm[2].clearance(city) <= quiet.clearance(city)
-scene.show(city, *calm, safe_distance=quiet.info["safe_distance"])
+quiet, plain, field = repare(city, *far, disturbance="none"), astar(city, *far), potential_field(city, *far)
+calm = {"REPARE, no disturbance": quiet, "A*": plain, "potential field": field}
+for name, route in calm.items():
+    print(f"{name:<22} {route.length:.1f} m, smallest clearance {route.clearance(city):.1f} m")
+assert plain.length < quiet.length < field.length
+assert field.clearance(city) <= quiet.clearance(city)
+scene.show(city, calm, safe_distance=quiet.info["safe_distance"])
 
 # %% [markdown]
 # *Figs 11 to 14*: the same three in gusts, out of the notch. A* flies half a metre from the wall. We push it off its
@@ -643,10 +643,10 @@ assert not trapped.reached
 # *Figs 15 to 17*: the three cases of Table 4.
 
 # %%
-scene.show(city, *(replace(route, planner=name) for name, route in kept.items()), safe_distance=3.5)
+scene.show(city, kept, safe_distance=3.5)
 
 # %%
-plot.profile(city, *(replace(route, planner=name) for name, route in kept.items()))
+plot.profile(city, kept)
 
 # %% [markdown]
 # ## In flight: the boundary
@@ -712,21 +712,20 @@ plot.finished(figure)
 
 # %%
 # NBVAL_CHECK_OUTPUT
-whole = [replace(repare(city, *far, disturbance=kind), planner=f"planned for {kind}") for kind in ("mild", "heavy")]
+whole = {f"planned for {kind}": repare(city, *far, disturbance=kind) for kind in ("mild", "heavy")}
 changing = repare(city, *far, disturbance=lambda moment: "mild" if moment < 6.0 else "heavy")
-changing = replace(changing, planner="REPARE, replanned")
 for plan in changing.info["plans"]:
     place = ", ".join(f"{part:.1f}" for part in plan.place)
     print(f"{plan.time:4.1f} s at ({place}): {plan.conditions}, D_min = {plan.safe_distance} m")
-for route in (*whole, changing):
-    print(f"{route.planner:<18} {route.length:.1f} m")
+for name, route in {**whole, "REPARE, replanned": changing}.items():
+    print(f"{name:<18} {route.length:.1f} m")
 grounded = repare(city, *far, load="heavy", disturbance=lambda moment: "mild" if moment < 6.0 else "heavy")
 print("heavy load:", grounded.reason)
-assert whole[0].length < changing.length < whole[1].length
+assert whole["planned for mild"].length < changing.length < whole["planned for heavy"].length
 assert not grounded.reached
 
 # %%
-scene.show(city, changing, *whole, safe_distance=5.5)
+scene.show(city, {"REPARE, replanned": changing, **whole}, safe_distance=5.5)
 
 # %% [markdown]
 # ## What should a metre cost?
@@ -834,8 +833,8 @@ name = "light load, heavy disturbance"
 both = "REPARE", "hazard, any angle"
 pairs_of_routes = list(zip(*(results[name][planner] for planner in both), strict=True))
 most = max(range(len(sixty)), key=lambda i: pairs_of_routes[i][0].length - pairs_of_routes[i][1].length)
-compared_routes = [replace(route, planner=planner) for route, planner in zip(pairs_of_routes[most], both, strict=True)]
-plot.profile(city, astar(city, *sixty[most]), *compared_routes, safe_distance=5.5)
+compared_routes = dict(zip(both, pairs_of_routes[most], strict=True))
+plot.profile(city, astar(city, *sixty[most]), compared_routes, safe_distance=5.5)
 
 # %% [markdown]
 # ## Turn it yourself
@@ -848,7 +847,7 @@ plot.profile(city, astar(city, *sixty[most]), *compared_routes, safe_distance=5.
 def turn(disturbance="mild", load="light", omega=2.0):
     """REPARE out of the notch, seen from above, with its zone."""
     now = flight_conditions(load, disturbance)
-    zone = np.where(city.clearance < now.safe_distance, repare_price(city, now, weights=(omega, 1.0, 1.0)), np.nan)
+    zone = np.where(city.clearance < now.safe_distance, repare_price(city, now, penalty=omega), np.nan)
     route = repare(city, notch, middle, load=load, disturbance=disturbance, penalty=omega)
     shown = [route] if route.reached else []
     figure = plot.section(city, 30.5, zone, *shown, label="price of a metre in the zone", norm=LogNorm(1, 1000))

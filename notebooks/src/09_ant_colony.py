@@ -673,9 +673,7 @@ plot.front(front, *marked)
 # %%
 scene.show(
     campus.city,
-    replace(exact, planner="exact optimum"),
-    marked[1],
-    replace(marked[2], planner="ours"),
+    {"exact optimum": exact, "printed, for risk": marked[1], "ours": marked[2]},
     risk=campus,
 )
 
@@ -700,8 +698,7 @@ def turn(beta=12.0, gamma=2.0, evaporation=0.1):
     return plot.risk(
         campus,
         27.5,
-        replace(route, planner=f"β = {beta:g}, γ = {gamma:g}, ρ = {evaporation:g}: gap {gap:.0%}"),
-        replace(exact, planner="exact optimum"),
+        {f"β = {beta:g}, γ = {gamma:g}, ρ = {evaporation:g}: gap {gap:.0%}": route, "exact optimum": exact},
     )
 
 

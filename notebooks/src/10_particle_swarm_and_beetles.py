@@ -435,7 +435,7 @@ assert optimality_gap(refined, optimum) < optimality_gap(swarmed, optimum)
 
 # %%
 named = {"exact optimum": optimum, "best curve of the swarm": swarmed, "after refinement": refined}
-figure = plot.risk(campus, 27.5, *(replace(route, planner=name) for name, route in named.items()))
+figure = plot.risk(campus, 27.5, named)
 for points in arcs[:60]:
     curve = cubic_bspline([optimum.points[0], *points, optimum.points[-1]])
     figure.axes[0].plot(*curve[:, :2].T, color="white", linewidth=0.6, alpha=0.6)
@@ -842,7 +842,7 @@ assert 23 < 8.75e-7 / industry < 24.5
 # %%
 refined_optimum = refine(optimum, campus, rng=0)
 shown = {"PSO-BAS, risk and length": aware_route, "PSO-BAS, blind": blind_route, "exact, refined": refined_optimum}
-scene.show(campus.city, *(replace(route, planner=name) for name, route in shown.items()), risk=campus)
+scene.show(campus.city, shown, risk=campus)
 
 # %% [markdown]
 # ## Turn it yourself

@@ -269,8 +269,8 @@ assert repaired.clearance(city) > uav.diameter / 2
 assert allowed_speed(kept.curvature.max()) < allowed_speed(raw.curvature.max()) / 2
 
 # %%
-both = replace(repaired, planner="repaired"), replace(kept, planner="keeping 1 m")
-plot.corner(city, raw, *both, center=(62, 22, 30.5), reach=13, diameter=uav.diameter, route=route)
+both = {"repaired": repaired, "keeping 1 m": kept}
+plot.corner(city, raw, both, center=(62, 22, 30.5), reach=13, uav_diameter=uav.diameter, route=route)
 
 # %% [markdown]
 # `smooth` measures the whole curve: the exact distance to the voxels at points an eighth of the body apart, less what
@@ -330,7 +330,7 @@ for name, values in speeds.items():
 assert np.median(speeds["grid"]) < np.median(speeds["repaired"]) < np.median(speeds["any-angle"])
 
 # %%
-scene.show(city, repaired.route(), replace(route, planner="any-angle route"))
+scene.show(city, repaired, {"any-angle route": route})
 
 # %% [markdown]
 # ## The papers' figures: curvature and pitch along the way
@@ -434,7 +434,7 @@ for name, values in needed.items():
 enough = GRAVITY * np.tan(np.radians(30))
 print(f"a bank of 30° gives {enough:.2f} m/s²")
 meets = {
-    by: sum(feasibility(curve, uav, campus.city, as_printed=True, reading=by).feasible for curve in found)
+    by: sum(feasibility(curve, campus.city, uav, as_printed=True, reading=by).feasible for curve in found)
     for by in ("plan", "space")
 }
 print(f"the papers' limit is met by {meets['plan']} of {len(found)} in plan, by {meets['space']} in space")
@@ -456,16 +456,16 @@ assert speeds.max() < 6.5
 # turn together. It says where each is worst. The papers' check, and ours:
 
 # %%
-fastest, report = greatest_speed(smoothed, uav), feasibility(smoothed, uav, campus.city)
-print("as printed\n", feasibility(smoothed, uav, campus.city, as_printed=True), "\n", sep="")
+fastest, report = greatest_speed(smoothed, uav), feasibility(smoothed, campus.city, uav)
+print("as printed\n", feasibility(smoothed, campus.city, uav, as_printed=True), "\n", sep="")
 print("ours\n", report, "\n", sep="")
-print("slower\n", feasibility(smoothed, uav, campus.city, speed=fastest), sep="")
-assert feasibility(smoothed, uav, campus.city, as_printed=True).feasible
+print("slower\n", feasibility(smoothed, campus.city, uav, speed=fastest), sep="")
+assert feasibility(smoothed, campus.city, uav, as_printed=True).feasible
 assert not report.feasible
 assert report["thrust"].worst > 2.5 * uav.thrust
 assert report["tilt"].worst > 90
 assert 5.4 < fastest < 5.6
-assert feasibility(smoothed, uav, campus.city, speed=fastest).feasible
+assert feasibility(smoothed, campus.city, uav, speed=fastest).feasible
 
 # %% [markdown]
 # The thrust fails as well: in the sharpest bends it would take more than twice what the rotors have, and where the
@@ -484,7 +484,7 @@ assert feasibility(smoothed, uav, campus.city, speed=fastest).feasible
 def deaths_at(curve, speed):
     """Deaths per 10⁹ flights along a curve at a constant speed."""
     at_speed = replace(campus, uav=replace(uav, cruise_speed=speed))
-    return 1e9 * at_speed.fatalities(curve.route(), speed)
+    return 1e9 * at_speed.fatalities(curve, speed)
 
 
 candidates = {"exact route, every node": [smoothed]}
@@ -503,13 +503,13 @@ for count in (5, 4, 3, 2, 1):
 table = {}
 print("                         speed [m/s]      risk [1e-6/h]   deaths per 1e9 flights   flyable at 16 m/s")
 for name, group in candidates.items():
-    rows = [(v := greatest_speed(c, uav), 1e6 * campus.integral(c.route()), deaths_at(c, v)) for c in group]
+    rows = [(v := greatest_speed(c, uav), 1e6 * campus.integral(c), deaths_at(c, v)) for c in group]
     table[name] = np.array(rows)
-    able = [feasibility(curve, uav, campus.city).feasible for curve in group]
+    able = [feasibility(curve, campus.city, uav).feasible for curve in group]
     middle = np.median(table[name], axis=0)
     print(f"{name:<24} {middle[0]:11.1f} {middle[1]:18.2f} {middle[2]:18.2f} {sum(able):19d} of {len(able)}")
 blind = Curve(least_risk(campus, start, goal, risk_weight=0.0, length_weight=1.0, min_clearance=3.0).points)
-print(f"shortest, every node     {greatest_speed(blind, uav):11.1f} {1e6 * campus.integral(blind.route()):18.2f} "
+print(f"shortest, every node     {greatest_speed(blind, uav):11.1f} {1e6 * campus.integral(blind):18.2f} "
       f"{deaths_at(blind, greatest_speed(blind, uav)):18.2f}")  # fmt: skip
 print(f"exact route at 16 m/s, if it could: {deaths_at(smoothed, 16.0):.2f} deaths per 1e9 flights")
 assert np.median(table["exact, refined"], axis=0)[0] < greatest_speed(smoothed, uav)
@@ -539,18 +539,18 @@ plot.finished(figure)
 # %%
 quickest = max(candidates["swarm, 1 waypoint"], key=lambda curve: greatest_speed(curve, uav))
 its_speed = greatest_speed(quickest, uav)
-more = campus.integral(quickest.route()) / campus.integral(smoothed.route())
+more = campus.integral(quickest) / campus.integral(smoothed)
 quicker = (quickest.length / its_speed) / (smoothed.length / fastest)
 print(f"at {its_speed:.1f} m/s: risk per hour {more:.2f} times that of the exact route, time {quicker:.2f}, deaths per "
       f"flight {deaths_at(quickest, its_speed) / deaths_at(smoothed, fastest):.2f} times")  # fmt: skip
 assert 11.5 < its_speed < 12
 assert 1.3 < more < 1.5
 assert quicker < 0.5
-display(feasibility(quickest, uav, campus.city))
+display(feasibility(quickest, campus.city, uav))
 plot.curve_profile(smoothed, quickest, speed=uav.cruise_speed, cell=campus.city.cell)
 
 # %%
-scene.show(campus.city, quickest.route(), replace(smoothed.route(), planner="least risk + B-spline"), risk=campus)
+scene.show(campus.city, quickest, {"least risk + B-spline": smoothed}, risk=campus)
 
 # %% [markdown]
 # Neither planner knew the limit. One that searches among flyable curves only, by Eq. 7 in the place of "κ < 1", would
@@ -566,7 +566,7 @@ shown = {"exact route": smoothed, "swarm, 1 waypoint": quickest, "swarm, 7 waypo
 def turn(curve="exact route", speed=5.0, bank_deg=30.0):
     """The report of a curve and its curvature and pitch."""
     bank = np.radians(bank_deg)
-    display(feasibility(shown[curve], uav, campus.city, speed=speed, bank=bank))
+    display(feasibility(shown[curve], campus.city, uav, speed=speed, bank=bank))
     return plot.curve_profile(shown[curve], speed=speed, cell=campus.city.cell, bank=bank)
 
 

@@ -28,13 +28,14 @@ from ipywidgets import FloatSlider, interact
 
 from uavlab import plot, scene
 from uavlab.city import City, table1_city
-from uavlab.flight import GPS, PERFECT_GPS, Autopilot, OffsetProcess, Wind, crash_rate, fly, monte_carlo, offset_sigma
+from uavlab.flight import GPS, PERFECT_GPS, Autopilot, OffsetProcess, crash_rate, fly, monte_carlo, offset_sigma
 from uavlab.offsets import safety_domain
 from uavlab.planners import astar, hazard_astar, least_energy, potential_field, repare
 from uavlab.power import energy_per_metre, power_needed
 from uavlab.resilience import DISTURBANCES, LOADS, ConditionCheck, Monitor, safe_distance
 from uavlab.route import Route
 from uavlab.vehicle import LIGHT_QUADROTOR
+from uavlab.weather import Wind
 
 # %%
 ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
@@ -504,7 +505,7 @@ plot.finished(figure)
 # NBVAL_CHECK_OUTPUT
 high, low = (33.5, 38.5, 65.5), (63.5, 7.5, 7.5)
 for name, wind in {"calm": (0.0, 0.0), "head wind": (-5.0, -7.5), "tail wind": (5.0, 7.5)}.items():
-    shortest, cheapest = astar(city, high, low), least_energy(city, high, low, uav, wind)
+    shortest, cheapest = astar(city, high, low), least_energy(city, high, low, uav, Wind(wind))
     legs = np.diff(shortest.points, axis=0)
     paid = (shortest.leg_lengths * energy_per_metre(uav, legs, wind)).sum()
     print(f"{name:<10} shortest {shortest.length:.1f} m, {paid / 1000:.2f} kJ; least energy {cheapest.length:.1f} m,",

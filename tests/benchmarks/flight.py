@@ -18,7 +18,7 @@ from astar import machine, print_table
 from scipy.signal import lfilter
 
 from uavlab.city import City, table1_city
-from uavlab.flight import PERFECT_GPS, Autopilot, Gps, Wind, monte_carlo
+from uavlab.flight import PERFECT_GPS, Autopilot, Gps, monte_carlo
 from uavlab.flight.motion import PREVIEW, advance, velocity_at
 from uavlab.flight.simulation import TIME_STEP, setup_of, start_of
 from uavlab.planners import astar, repare
@@ -27,7 +27,7 @@ from uavlab.route import Route
 from uavlab.spline import Curve, smooth
 from uavlab.sweep import sweep
 from uavlab.vehicle import GRAVITY, UAV
-from uavlab.weather import dryden_gusts
+from uavlab.weather import Wind, dryden_gusts
 from uavlab.weather.forces import STANDARD_AIR
 
 SPEED = 5.0

@@ -20,8 +20,9 @@ from scipy.sparse.csgraph import dijkstra
 
 from uavlab.planners import least_risk, pareto_front
 from uavlab.planners.grid import LENGTHS, MOVES
-from uavlab.planners.risk_question import MAX_PITCH, MAX_TURN
+from uavlab.planners.risk_question import MAX_TURN
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
+from uavlab.spline.limits import MAX_PITCH
 
 QUESTIONS: dict[str, dict[str, Any]] = {
     "risk": {},

@@ -25,8 +25,9 @@ from astar import Voxel, machine, print_table
 from uavlab.optimizers import pso
 from uavlab.planners import ant_colony, least_risk
 from uavlab.planners.ant_colony import ANTS, OURS
-from uavlab.planners.risk_question import MAX_PITCH, MAX_TURN
+from uavlab.planners.risk_question import MAX_TURN
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
+from uavlab.spline.limits import MAX_PITCH
 
 
 class Way(NamedTuple):

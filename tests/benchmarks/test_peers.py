@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from uavlab.city import City, table1_city
-from uavlab.flight import Autopilot, Wind, fly
-from uavlab.flight.disturbance import gust_deviations
+from uavlab.flight import Autopilot, fly
 from uavlab.planners import penalty_zone
 from uavlab.resilience import Controller
 from uavlab.route import Route
 from uavlab.vehicle import LIGHT_QUADROTOR
+from uavlab.weather import Wind
+from uavlab.weather.wind import gust_deviations
 
 
 @pytest.fixture(scope="module")

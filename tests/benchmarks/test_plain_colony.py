@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 from uavlab.planners import ant_colony, least_risk
-from uavlab.planners.risk_question import MAX_PITCH, MAX_TURN
+from uavlab.planners.risk_question import MAX_TURN
 from uavlab.risk import CAMPUS_FLIGHT, random_campus
 from uavlab.route import Route
+from uavlab.spline.limits import MAX_PITCH
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,7 @@ import pytest
 from places import EXACT, SKY, straight
 from scipy.integrate import quad
 
-from uavlab.flight import OffsetProcess, Wind, fly, gust_spectrum, offset_sigma
-from uavlab.flight.disturbance import gust_deviations
+from uavlab.flight import OffsetProcess, fly, offset_sigma
 from uavlab.flight.models import air_of, passing_speed
 from uavlab.flight.motion import blow
 from uavlab.flight.path import planned_speed
@@ -17,8 +16,9 @@ from uavlab.flight.simulation import setup_of, start_of
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
-from uavlab.weather import Weather, dryden_gusts, dryden_parameters
+from uavlab.weather import Weather, Wind, dryden_gusts, dryden_parameters, gust_spectrum
 from uavlab.weather.forces import STANDARD_AIR
+from uavlab.weather.wind import gust_deviations
 
 DT = 0.05
 ALTITUDE = 50.0

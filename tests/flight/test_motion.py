@@ -8,12 +8,13 @@ import pytest
 from places import EXACT, SKY, beside_wall, straight
 
 from uavlab.city import City
-from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, Wind, fly, monte_carlo, offset_sigma
+from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, fly, monte_carlo, offset_sigma
 from uavlab.flight.motion import LEASH, LEAST_THRUST
 from uavlab.power import power_needed
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR, RISK_QUADROTOR
+from uavlab.weather import Wind
 from uavlab.weather.forces import STANDARD_AIR
 
 UNHEEDING = Autopilot(heeds_limits=False)

@@ -7,16 +7,17 @@ import pytest
 from places import EXACT, SKY, straight
 from scipy.spatial.transform import Rotation
 
-from uavlab.flight import OffsetProcess, Wind, fly, monte_carlo
-from uavlab.flight.disturbance import gust_deviations
+from uavlab.flight import OffsetProcess, fly, monte_carlo
 from uavlab.flight.motion import speed_at, steps_to_goal
-from uavlab.flight.path import BANK, BRAKING, CREEP, TURN_JUMP, level_thrust, planned_speed, why_grounded
+from uavlab.flight.path import BANK, BRAKING, TURN_JUMP, level_thrust, planned_speed
 from uavlab.flight.simulation import setup_of
 from uavlab.resilience import ADVANCED, Controller
 from uavlab.route import Route
 from uavlab.spline import Curve
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR, RISK_QUADROTOR
-from uavlab.weather import Weather, grounded_by, rain_force, reachable_ground_speed
+from uavlab.weather import Weather, Wind, grounded_by, rain_force, reachable_ground_speed
+from uavlab.weather.envelope import CREEP
+from uavlab.weather.wind import gust_deviations, why_grounded
 
 CALM = Wind(gusts="none")
 BREEZE = Wind((-3.0, 5.0, 0.5), rain_mm_per_h=20.0)

@@ -7,11 +7,12 @@ import pytest
 from places import EXACT, SKY, beside_wall, straight
 from scipy.stats import binomtest
 
-from uavlab.flight import Flight, Flights, OffsetProcess, Rate, Wind, crash_rate, fly, monte_carlo
+from uavlab.flight import Flight, Flights, OffsetProcess, Rate, crash_rate, fly, monte_carlo
 from uavlab.flight.motion import COLUMNS
 from uavlab.resilience import ConditionCheck, Monitor
 from uavlab.route import Route
 from uavlab.vehicle import LIGHT_QUADROTOR
+from uavlab.weather import Wind
 
 
 def flights_of(crashed):

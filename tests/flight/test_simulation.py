@@ -8,7 +8,7 @@ import pytest
 from places import EXACT, SKY, beside_wall, standard_errors_apart, straight
 
 from uavlab.city import City
-from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, Wind, crash_rate, fly, monte_carlo
+from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, crash_rate, fly, monte_carlo
 from uavlab.flight.simulation import room, setup_of, start_of
 from uavlab.offsets import collision_probability, offset_paths, safety_domain
 from uavlab.planners import astar, hazard_astar, repare
@@ -18,6 +18,7 @@ from uavlab.route import Route
 from uavlab.spline import Curve
 from uavlab.statistics import share_interval
 from uavlab.vehicle import LIGHT_QUADROTOR
+from uavlab.weather import Wind
 
 UAV = LIGHT_QUADROTOR
 SWAY = OffsetProcess(1.0)

@@ -155,8 +155,8 @@ def plain_walk(free, price, tau, ends, rng, limits, *, alpha, beta, gamma, heigh
 
 
 def plain_colony(
-    risk_map, ends, rng, limits, weights, *, budget, ants, all_lay, evaporation, deposit, min_pheromone, initial_pheromone,
-    max_pheromone, **habits,
+    risk_map, ends, rng, limits, weights, *, budget, ants, all_lay, evaporation, deposit, min_pheromone,
+    initial_pheromone, max_pheromone, **habits,
 ):  # fmt: skip
     """The colony as one reads it: all ants' costs, pheromone after each generation, and the best way."""
     city, free = risk_map.city, allowed(risk_map, limits["min_clearance"])

@@ -321,15 +321,15 @@ def ring_by_looking(occupied, radius):
 @pytest.mark.parametrize(("safe_distance", "radius"), [(1.5, 1), (3.5, 3), (4.5, 4), (5.5, 5)])
 def test_ring_is_26_points_half_a_cell_nearer_than_the_safe_distance(safe_distance, radius):
     city = City(np.random.default_rng(8).random((17, 15, 13)) < 0.01)
-    price = penalty_zone(city, safe_distance, penalty=0.5, shape="ring")
+    price = penalty_zone(city, safe_distance, penalty=0.5, zone="ring")
     assert np.array_equal(price, 1 + 0.5 * ring_by_looking(city.occupied, radius))
 
 
 def test_ring_and_ball_are_measured_in_cells():
     occupied = np.random.default_rng(8).random((17, 15, 13)) < 0.01
     for shape in ("ball", "ring"):
-        coarse = penalty_zone(City(occupied, cell=4.0), 4 * 3.5, penalty=1.0, shape=shape)
-        assert np.array_equal(coarse, penalty_zone(City(occupied), 3.5, penalty=1.0, shape=shape))
+        coarse = penalty_zone(City(occupied, cell=4.0), 4 * 3.5, penalty=1.0, zone=shape)
+        assert np.array_equal(coarse, penalty_zone(City(occupied), 3.5, penalty=1.0, zone=shape))
 
 
 @pytest.mark.parametrize(
@@ -339,7 +339,7 @@ def test_ring_and_ball_are_measured_in_cells():
 def test_ring_against_a_ball_of_centre_distances(table1, radius, missed, added):
     """Up to r = 4, among blocks this large, the ring misses no voxel whose centre is within r of an occupied one."""
     ball = (scipy.ndimage.distance_transform_edt(~table1.occupied) <= radius) & ~table1.occupied
-    ring = (penalty_zone(table1, radius + 0.5, penalty=1.0, shape="ring") > 1) & ~table1.occupied
+    ring = (penalty_zone(table1, radius + 0.5, penalty=1.0, zone="ring") > 1) & ~table1.occupied
     assert (ball & ~ring).sum() / ball.sum() == pytest.approx(missed, abs=1e-4)
     assert (ring & ~ball).sum() / ball.sum() == pytest.approx(added, abs=1e-4)
     assert (ball <= ring).all() == (missed == 0)
@@ -352,7 +352,7 @@ def test_ring_against_a_ball_of_centre_distances(table1, radius, missed, added):
 def test_ring_against_the_ball_that_is_priced_by_default(table1, radius, missed, added):
     """Measured to surfaces, the ball of D_min = r + ½ is larger: from r = 2 on the ring misses voxels at edges."""
     ball = (penalty_zone(table1, radius + 0.5, penalty=1.0) > 1) & ~table1.occupied
-    ring = (penalty_zone(table1, radius + 0.5, penalty=1.0, shape="ring") > 1) & ~table1.occupied
+    ring = (penalty_zone(table1, radius + 0.5, penalty=1.0, zone="ring") > 1) & ~table1.occupied
     assert (ball & ~ring).sum() / ball.sum() == pytest.approx(missed, abs=1e-4)
     assert (ring & ~ball).sum() / ball.sum() == pytest.approx(added, abs=1e-4)
 
@@ -362,9 +362,9 @@ def test_distance_and_penalty_may_differ_from_voxel_to_voxel(shape):
     rng = np.random.default_rng(21)
     city = City(rng.random((13, 12, 11)) < 0.01, cell=2.0)
     distances, penalties = rng.choice([3.0, 5.0, 9.0], city.shape), rng.uniform(0, 3, city.shape)
-    price = penalty_zone(city, distances, penalty=penalties, shape=shape)
+    price = penalty_zone(city, distances, penalty=penalties, zone=shape)
     for distance in (3.0, 5.0, 9.0):
-        near = penalty_zone(city, distance, penalty=1.0, shape=shape) > 1
+        near = penalty_zone(city, distance, penalty=1.0, zone=shape) > 1
         here = distances == distance
         assert np.array_equal(price[here], np.where(near, 1 + penalties, 1.0)[here])
     assert (price > 1).any()
@@ -374,8 +374,8 @@ def test_distance_and_penalty_may_differ_from_voxel_to_voxel(shape):
 @pytest.mark.parametrize("shape", ["ball", "ring"])
 def test_arrays_of_one_value_are_that_value(shape):
     city = City(np.random.default_rng(8).random((9, 8, 7)) < 0.02)
-    expected = penalty_zone(city, 2.5, penalty=0.3, shape=shape)
-    everywhere = penalty_zone(city, np.full(city.shape, 2.5), penalty=np.full(city.shape, 0.3), shape=shape)
+    expected = penalty_zone(city, 2.5, penalty=0.3, zone=shape)
+    everywhere = penalty_zone(city, np.full(city.shape, 2.5), penalty=np.full(city.shape, 0.3), zone=shape)
     assert np.array_equal(everywhere, expected)
 
 
@@ -385,7 +385,7 @@ def test_ring_overlooks_a_mast_that_stands_inside_it():
     city = City(occupied)
     beside = (6, 6, 5)
     assert penalty_zone(city, 3.5, penalty=1.0)[beside] == 2
-    assert penalty_zone(city, 3.5, penalty=1.0, shape="ring")[beside] == 1
+    assert penalty_zone(city, 3.5, penalty=1.0, zone="ring")[beside] == 1
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -454,7 +454,7 @@ ENDS = (0.5, 0.5, 0.5), (3.5, 3.5, 3.5)
         (lambda: penalty_zone(OPEN, np.zeros((4, 4, 4)), penalty=1), "safe_distance must be .* above 0, got 0"),
         (lambda: penalty_zone(OPEN, 1, penalty=np.full((4, 4, 4), -2)), "penalty must be .* at least 0, got -2"),
         (lambda: penalty_zone(OPEN, "3.5", penalty=1), "safe_distance must be a number"),
-        (lambda: penalty_zone(OPEN, 3.5, penalty=1, shape="cube"), "shape must be 'ball' or 'ring', got 'cube'"),
+        (lambda: penalty_zone(OPEN, 3.5, penalty=1, zone="cube"), "shape must be 'ball' or 'ring', got 'cube'"),
     ],
 )
 def test_bad_questions_are_refused_with_the_reason(ask, message):

@@ -7,11 +7,12 @@ from uavlab.checks import frozen
 from uavlab.city import City
 from uavlab.city.segments import runs_of
 from uavlab.planners.curves import PER_SEGMENT, SLACK, Measure, Sky, Task, Weights, breaches, costs_of, task_of
-from uavlab.planners.risk_question import MAX_PITCH, MAX_TURN, checked_limits, flyable_endpoints, price_per_cell
+from uavlab.planners.risk_question import MAX_TURN, checked_limits, flyable_endpoints, price_per_cell
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 from uavlab.risk.drift import NO_FALLS, landing_rate
 from uavlab.route import Route
 from uavlab.spline import cubic_bspline
+from uavlab.spline.limits import MAX_PITCH
 
 ANY = {"max_turn": np.pi, "max_pitch": np.pi / 2}
 RISK = Weights()

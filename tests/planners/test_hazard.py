@@ -29,7 +29,7 @@ def test_price_is_one_and_what_the_crossings_of_a_metre_cost(seed):
     city, rng = random_city(seed)
     sigma, radius, speed, frequency, crash = rng.uniform(0.3, 2, 5)
     price = hazard_price(
-        city, sigma, uav_radius=radius, speed=speed, natural_frequency=frequency, crash_price=1000 * crash
+        city, sigma, uav_diameter=2 * radius, speed=speed, natural_frequency=frequency, crash_price=1000 * crash
     )
     margin = np.maximum(city.clearance - radius, 0.0)
     expected = 1 + 1000 * crash * crossing_rate(margin, sigma, frequency) / speed
@@ -72,7 +72,7 @@ def test_the_price_is_kept_and_not_confused():
     for _ in range(2):
         for city in cities:
             for sigma, radius, mean, crash in questions:
-                price = hazard_price(city, sigma, uav_radius=radius, mean_offset=mean, crash_price=crash)
+                price = hazard_price(city, sigma, uav_diameter=2 * radius, mean_offset=mean, crash_price=crash)
                 assert np.array_equal(price, cached_price.__wrapped__(city, sigma, radius, mean, crash / 5))
     assert hazard_price(cities[0], 1) is hazard_price(cities[0], np.float64(1), mean_offset=np.zeros(2))
 
@@ -81,8 +81,8 @@ def test_the_price_is_kept_and_not_confused():
 def test_cost_is_that_of_astar_and_of_scipy_s_dijkstra_on_the_price(seed):
     city, rng = random_city(seed)
     start, goal = city.center_of(rng.permutation(np.argwhere(~city.occupied))[:2])
-    price = hazard_price(city, 1.3, uav_radius=0.1)
-    route = hazard_astar(city, start, goal, sigma=1.3, uav_radius=0.1, any_angle=False)
+    price = hazard_price(city, 1.3, uav_diameter=0.2)
+    route = hazard_astar(city, start, goal, sigma=1.3, uav_diameter=0.2, any_angle=False)
     assert route.cost == pytest.approx(cheapest_by_scipy(city, start, goal, price), rel=1e-9)
     assert route.cost == pytest.approx(additive_cost(city, route, price), rel=1e-12)
     assert route.cost == pytest.approx(astar(city, start, goal, price=price).cost, rel=1e-12)
@@ -208,7 +208,7 @@ ENDS = (0.5, 0.5, 0.5), (3.5, 3.5, 3.5)
     [
         ({"sigma": 0.0}, "sigma must be finite and above 0, got 0"),
         ({"sigma": (1.0, 2.0)}, "sigma must be one number"),
-        ({"sigma": 1.0, "uav_radius": -0.5}, "uav_radius must be finite and at least 0, got -0.5"),
+        ({"sigma": 1.0, "uav_diameter": -0.5}, "uav_diameter must be finite and at least 0, got -0.5"),
         ({"sigma": 1.0, "speed": 0.0}, "speed must be finite and above 0, got 0"),
         ({"sigma": 1.0, "natural_frequency": np.inf}, "natural_frequency must be finite and above 0, got inf"),
         ({"sigma": 1.0, "crash_price": -1.0}, "crash_price must be finite and at least 0, got -1"),

@@ -10,12 +10,13 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from uavlab.city import City
-from uavlab.flight import PERFECT_GPS, Autopilot, Wind, fly
+from uavlab.flight import PERFECT_GPS, Autopilot, fly
 from uavlab.planners import astar, least_energy
 from uavlab.planners.grid import LENGTHS, MOVES
 from uavlab.planners.least_energy import energy_left, slopes_of
 from uavlab.power import energy_per_metre, power_needed
 from uavlab.vehicle import LIGHT_QUADROTOR, RISK_QUADROTOR
+from uavlab.weather import Wind
 
 WINDS = [(0.0, 0.0, 0.0), (6.0, 0.0, 0.0), (-5.0, 7.0, 0.0), (3.0, 3.0, 1.0)]
 
@@ -51,12 +52,12 @@ def graph_of(city, uav, wind, **options):
 def test_the_energy_is_that_of_dijkstra_on_an_independent_graph(seed, uav, wind):
     city = town(seed)
     nodes = [np.ravel_multi_index(index, city.shape) for index in ((0, 0, 0), (10, 9, 6), (0, 9, 2))]
-    least = dijkstra(graph_of(city, uav, wind, speed=9.0), indices=nodes)
+    least = dijkstra(graph_of(city, uav, Wind(wind), speed=9.0), indices=nodes)
     for (one, a), (other, b) in product(enumerate(nodes), repeat=2):
         if one == other:
             continue
         start, goal = city.center_of(city.index_of([a, b]))
-        route = least_energy(city, start, goal, uav, wind, speed=9.0)
+        route = least_energy(city, start, goal, uav, Wind(wind), speed=9.0)
         assert route.reached == np.isfinite(least[one, b])
         assert route.cost == pytest.approx(least[one, b], rel=1e-9)
 
@@ -70,7 +71,7 @@ def test_the_estimate_is_exact_on_an_empty_map(wind):
         least = linprog(costs, A_eq=MOVES.T, b_eq=way).fun
         assert energy_left(slopes, *way) == pytest.approx(least, rel=1e-8, abs=1e-8)
     city = City(np.zeros((40, 40, 20), bool), cell=2.0)
-    route = least_energy(city, (3, 5, 7), (71, 55, 33), RISK_QUADROTOR, wind)
+    route = least_energy(city, (3, 5, 7), (71, 55, 33), RISK_QUADROTOR, Wind(wind))
     assert route.info["expanded"] < 40 * 40 * 20 / 20
 
 
@@ -90,9 +91,9 @@ def test_energy_of_a_metre_is_power_over_the_speed_that_is_held():
 def test_where_the_wind_leaves_no_way_back_it_says_so():
     city = City(np.zeros((20, 20, 10), bool), cell=5.0)
     weak = replace(LIGHT_QUADROTOR, cruise_speed=4.0, top_speed=5.0)
-    with_it = least_energy(city, (10, 50, 25), (90, 50, 25), weak, (8.0, 0, 0))
+    with_it = least_energy(city, (10, 50, 25), (90, 50, 25), weak, Wind((8.0, 0, 0)))
     assert with_it.reached
-    against = least_energy(city, (90, 50, 25), (10, 50, 25), weak, (8.0, 0, 0))
+    against = least_energy(city, (90, 50, 25), (10, 50, 25), weak, Wind((8.0, 0, 0)))
     assert not against.reached
     assert against.reason.startswith("the wind leaves ")
 
@@ -103,7 +104,7 @@ def test_a_flight_takes_what_was_planned():
     occupied[30, :20] = True
     city = City(occupied, cell=10.0)
     for wind in ((5.0, 0.0, 0.0), (-5.0, 2.0, 0.0)):
-        route = least_energy(city, (50, 100, 50), (550, 150, 60), LIGHT_QUADROTOR, wind)
+        route = least_energy(city, (50, 100, 50), (550, 150, 60), LIGHT_QUADROTOR, Wind(wind))
         flight = fly(route, city, LIGHT_QUADROTOR, Wind(wind, "none"), Autopilot(gps=PERFECT_GPS), rng=0)
         assert flight.outcome == "arrived"
         assert flight.energy.battery == pytest.approx(route.cost, rel=0.1)
@@ -127,10 +128,8 @@ def test_take_off_and_landing_are_paid_for():
     ("options", "words"),
     [
         ({"uav": "quadrotor"}, "uav must be a UAV"),
-        ({"wind": (1.0,)}, "wind must be two or three finite numbers"),
+        ({"disturbance": (1.0, 2.0)}, "disturbance must be a Wind, got tuple"),
         ({"speed": 0.0}, "speed must be finite and above 0"),
-        ({"air_density": -1.0}, "air_density must be finite and above 0"),
-        ({"rain_mm_per_h": -1.0}, "rain_mm_per_h must be"),
         ({"goal": (0, 0, 999)}, "goal"),
     ],
 )

@@ -94,7 +94,7 @@ def test_what_is_made_of_a_route_keeps_it_all_along():
             assert 3.0 - 1e-6 <= points[:, 2].min() <= points[:, 2].max() <= 18.0 + 1e-6
             if made is not short:
                 assert promises_of(made) == promises_of(route) == promises_of(made.route())
-                verdict = feasibility(made, SLIM, city, speed=0.5, **wind)
+                verdict = feasibility(made, city, SLIM, speed=0.5, **wind)
                 assert verdict["clearance"].met, name
                 assert verdict["height"].limit == 3.0
                 assert verdict["height at most"].limit == 18.0
@@ -225,7 +225,7 @@ def test_a_body_does_not_fit_through_a_slit_that_is_narrower_than_it():
                 assert route.clearance(city) >= 0.5 - 1e-6
                 assert route.min_clearance == 0.5
     assert "no free way" in repare(slit(False), *ends, **calm).reason
-    assert hazard_astar(slit(False), *ends, sigma=0.3, uav_radius=0.1).reached
+    assert hazard_astar(slit(False), *ends, sigma=0.3, uav_diameter=0.2).reached
     assert astar(slit(False), *ends, min_clearance=0.5).reached is False
     near = (2.6, 10.1, 1.1), (4.9, 10.1, 1.1)
     with pytest.raises(ValueError, match=r"goal .* is 0\.18 m from the nearest obstacle, the body needs 0\.5 m"):

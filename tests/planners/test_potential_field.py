@@ -175,7 +175,7 @@ def test_in_the_open_it_flies_straight_or_as_short_as_moves_allow(attraction):
 def test_a_step_of_its_own_is_the_length_of_the_legs():
     route = potential_field(OPEN, (110, -40, 20), (160, -10, 40), moves="continuous", step=3.0)
     assert route.leg_lengths[:-1] == pytest.approx(3.0)
-    assert route.info["steps"] == len(route.points) - 1 == np.ceil(np.linalg.norm([50, 30, 20]) / 3)
+    assert route.info["expanded"] == len(route.points) - 1 == np.ceil(np.linalg.norm([50, 30, 20]) / 3)
 
 
 @pytest.mark.parametrize("setting", SETTINGS)
@@ -263,7 +263,7 @@ def test_no_setting_leads_out_of_the_notch_and_astar_does(table1):
         assert 70 < x < 90
         assert 15 < y < 35
         assert z in (30.0, 30.5)
-        assert route.info["steps"] < (100 if moves == "lattice" else 1200)  # found out in bounded steps
+        assert route.info["expanded"] < (100 if moves == "lattice" else 1200)  # found out in bounded steps
 
 
 def test_where_it_is_stuck_the_potential_has_a_minimum(table1):
@@ -334,10 +334,10 @@ def test_a_push_too_weak_flies_into_the_wall_and_says_where():
 @pytest.mark.parametrize("moves", MOVES)
 def test_it_gives_up_after_as_many_steps_as_allowed_and_not_before(moves):
     needed = potential_field(OPEN, (101, -49, 11), (141, -9, 31), moves=moves)
-    enough = potential_field(OPEN, (101, -49, 11), (141, -9, 31), moves=moves, max_steps=needed.info["steps"])
+    enough = potential_field(OPEN, (101, -49, 11), (141, -9, 31), moves=moves, max_steps=needed.info["expanded"])
     assert enough.reached
     assert np.array_equal(enough.points, needed.points)
-    short = potential_field(OPEN, (101, -49, 11), (141, -9, 31), moves=moves, max_steps=needed.info["steps"] - 1)
+    short = potential_field(OPEN, (101, -49, 11), (141, -9, 31), moves=moves, max_steps=needed.info["expanded"] - 1)
     assert not short.reached
     assert np.array_equal(short.points, needed.points[:-1])
     assert short.reason.startswith(f"gave up after {short.info['steps']} steps at (")
@@ -402,7 +402,7 @@ def interval(values, draws=2000):
 def compared(table1):
     """Pairs of Table 1's city, with the lengths of A*'s and REPARE's routes (ring of 3, ω = 2)."""
     pairs = table1.random_pairs(1000, 7, apart=40, min_clearance=4.5)
-    zone = penalty_zone(table1, 3.5, penalty=2.0, shape="ring")
+    zone = penalty_zone(table1, 3.5, penalty=2.0, zone="ring")
     return pairs, *(np.array([astar(table1, *pair, price=price).length for pair in pairs]) for price in (None, zone))
 
 

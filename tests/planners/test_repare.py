@@ -12,7 +12,7 @@ from uavlab.planners import astar, flight_conditions, penalty_zone, potential_fi
 from uavlab.planners.repare import cached_price
 from uavlab.resilience import LOADS, gust_offset
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
-from uavlab.weather import Weather, grounded_by
+from uavlab.weather import Weather, Wind, grounded_by
 
 TABLE_4 = ("light", "mild", 3.5), ("heavy", "mild", 4.5), ("light", "heavy", 5.5)
 NOTCH = (90, 18, 30), (50, 44, 30)  # Fig. 12
@@ -80,7 +80,7 @@ def test_as_printed_it_depends_on_the_direction_of_travel(table1, start, goal, p
 
 def test_as_printed_is_eq_13_on_the_outer_ring(table1):
     route = repare(table1, *NOTCH, penalty=0.2, as_printed=True, mean_offset=(9, 9))
-    zone = penalty_zone(table1, 3.5, penalty=0.2, shape="ring")
+    zone = penalty_zone(table1, 3.5, penalty=0.2, zone="ring")
     expected = astar(table1, *NOTCH, price=zone, heuristic="euclidean", as_printed=True)
     assert np.array_equal(route.points, expected.points)
     assert route.info["expanded"] == expected.info["expanded"]
@@ -140,15 +140,15 @@ def test_weight_by_hand_where_the_wind_may_come_from_any_side():
     ],
 )
 def test_weight_by_hand_in_a_wind_whose_direction_is_known(wind, share):
-    price = repare_price(wall(), flight_conditions("light", wind))
+    price = repare_price(wall(), flight_conditions("light", Wind(wind)))
     assert price[2] == pytest.approx(1 + 2 * (1 + repelled(1.5) + share * PUSH + LOAD_RATIO), rel=1e-12)
 
 
 def test_weights_by_hand():
-    now = flight_conditions("light", (-6, 0, 0))
-    price = repare_price(wall(), now, weights=(0.5, 3.0, 0.25))
+    now = flight_conditions("light", Wind((-6, 0, 0)))
+    price = repare_price(wall(), now, penalty=0.5, force_weight=3.0, load_weight=0.25)
     assert price[3] == pytest.approx(1 + 0.5 * (1 + repelled(2.5) + 3 * PUSH + 0.25 * LOAD_RATIO), rel=1e-12)
-    assert (repare_price(wall(), now, weights=(0.0, 1.0, 1.0)) == 1).all()
+    assert (repare_price(wall(), now, penalty=0.0) == 1).all()
 
 
 def test_load_and_disturbance_make_the_zone_dearer_and_wider():
@@ -161,14 +161,14 @@ def test_load_and_disturbance_make_the_zone_dearer_and_wider():
 
 
 def test_no_wind_has_no_direction_and_no_push():
-    still = flight_conditions("dead", (0.0, 0.0))
+    still = flight_conditions("dead", Wind((0.0, 0.0)))
     assert still.push == 0.0
     assert repare_price(wall(), still)[1] == pytest.approx(1 + 2 * (1 + repelled(0.5, 2.0) + 1.5 * 9.81 / 28))
 
 
 def test_a_force_towards_the_wall_never_makes_a_metre_cheaper(table1):
     for angle in np.linspace(0, 2 * np.pi, 5, endpoint=False):
-        now = flight_conditions("light", (6 * np.cos(angle), 6 * np.sin(angle), 0.0))
+        now = flight_conditions("light", Wind((6 * np.cos(angle), 6 * np.sin(angle), 0.0)))
         price = repare_price(table1, now)
         without = repare_price(table1, now._replace(push=0.0))
         towards = table1.towards_wall(now.wind)
@@ -176,7 +176,7 @@ def test_a_force_towards_the_wall_never_makes_a_metre_cheaper(table1):
         assert (price >= without).all()
         assert np.array_equal(near, without > 1)
         assert np.array_equal((price > without)[near], (towards > 0)[near])
-        assert (repare_price(table1, now, weights=(2.0, 2.0, 1.0)) >= price).all()
+        assert (repare_price(table1, now, force_weight=2.0) >= price).all()
 
 
 def test_the_mean_offset_widens_the_zone_before_walls_that_it_points_to_and_no_other():
@@ -210,57 +210,75 @@ def test_it_passes_a_pillar_on_the_side_from_which_the_wind_does_not_blow_to_it(
 
 def test_the_ring_misses_what_is_between_its_points_and_widens_like_the_ball():
     city, now = wall(), flight_conditions("light", "mild")
-    ball, ring = (repare_price(city, now, shape=shape) for shape in ("ball", "ring"))
+    ball, ring = (repare_price(city, now, zone=shape) for shape in ("ball", "ring"))
     assert ((ring > 1) <= (ball > 1)).all()
     assert (ring[3] > 1).all()  # three cells from the wall
     assert (ring[1:3] == 1).all()  # a wall one voxel thin: the ring looks through it
-    shifted = repare_price(city, now, shape="ring", mean_offset=(-2, 0))
+    shifted = repare_price(city, now, zone="ring", mean_offset=(-2, 0))
     assert (shifted[5] > 1).all()
-    route = repare(city, (5.5, 0.5, 2.5), (5.5, 4.5, 2.5), shape="ring")
+    route = repare(city, (5.5, 0.5, 2.5), (5.5, 4.5, 2.5), zone="ring")
     assert route.cost == 4.0
 
 
 def test_prices_of_other_cities_conditions_and_weights_are_not_confused():
     cities = wall(), canyon()
-    conditions = [flight_conditions(load, wind) for load in ("dead", "heavy") for wind in ("none", (5, 0), (0, 5))]
+    conditions = [
+        flight_conditions(load, wind) for load in ("dead", "heavy") for wind in ("none", Wind((5, 0)), Wind((0, 5)))
+    ]
     offsets = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
     weights = (2.0, 1.0, 1.0), (1.0, 1.0, 2.0), (1.0, 2.0, 1.0)
     cases = list(itertools.product(cities, conditions, offsets, weights, ("ball", "ring")))
     np.random.default_rng(0).shuffle(cases := [*cases, *cases])
-    for case in cases:
-        assert np.array_equal(repare_price(*case), cached_price.__wrapped__(*case))
+    for city, now, mean_offset, three, zone in cases:
+        named = dict(zip(("penalty", "force_weight", "load_weight"), three, strict=True))
+        price = repare_price(city, now, mean_offset=mean_offset, zone=zone, **named)
+        assert np.array_equal(price, cached_price.__wrapped__(city, now, mean_offset, three, zone))
 
 
 def test_the_price_is_kept_for_the_next_question():
     city, now = wall(), flight_conditions("light", "mild")
     first = repare_price(city, now)
-    assert repare_price(city, flight_conditions("light", "mild"), np.zeros(2), (2, 1, 1)) is first
+    assert repare_price(city, flight_conditions("light", "mild"), mean_offset=np.zeros(2), penalty=2) is first
     assert repare_price(wall(), now) is not first
 
 
 def test_without_obstacles_it_flies_straight():
     city = City(np.zeros((30, 5, 5), bool))
-    route = repare(city, (1, 2, 2), (28, 2, 2), disturbance=(3.0, 1.0), mean_offset=(1, 1))
+    route = repare(city, (1, 2, 2), (28, 2, 2), disturbance=Wind((3.0, 1.0)), mean_offset=(1, 1))
     assert route.cost == route.length == 27
 
 
 def test_wind_beyond_the_heaviest_class_needs_more_room_than_it():
-    assert flight_conditions("light", (9.0, 0.0)).safe_distance == 5.5
-    assert flight_conditions("light", (0.0, 11.0)).safe_distance == pytest.approx(7.5)
-    assert flight_conditions("light", (0.0, 11.0), reading="physical").safe_distance == pytest.approx(7.5)
-    assert flight_conditions("light", (0.0, 11.0)).grounded == ""
+    assert flight_conditions("light", Wind((9.0, 0.0))).safe_distance == 5.5
+    assert flight_conditions("light", Wind((0.0, 11.0))).safe_distance == pytest.approx(7.5)
+    assert flight_conditions("light", Wind((0.0, 11.0)), reading="physical").safe_distance == pytest.approx(7.5)
+    assert flight_conditions("light", Wind((0.0, 11.0))).grounded == ""
 
 
-def test_a_wind_may_have_two_or_three_parts():
-    two, three = flight_conditions("light", [3.0, -4.0]), flight_conditions("light", np.array([3, -4, 0]))
-    assert two == three
-    assert two.wind == (3.0, -4.0, 0.0)
-    assert two.name == "light load, wind 5.0 m/s (mild disturbance)"
-    assert flight_conditions("light", (0.0, 0.0, 7.0)).name.endswith("(moderate disturbance)")
+def test_of_a_wind_and_of_a_weather_the_mean_counts():
+    weather = Weather(forecast_wind=5.0, wind_from_deg=323.13)
+    wind, weathered = flight_conditions("light", Wind((3.0, -4.0))), flight_conditions("light", weather)
+    assert wind.wind == (3.0, -4.0, 0.0)
+    assert weathered.wind == pytest.approx((3.0, -4.0, 0.0), abs=1e-3)
+    assert wind.name == weathered.name == "light load, wind 5.0 m/s (mild disturbance)"
+    assert wind.safe_distance == weathered.safe_distance == 3.5
+    assert flight_conditions("light", Wind((0.0, 0.0, 7.0))).name.endswith("(moderate disturbance)")
+
+
+def test_the_rain_and_gusts_that_are_given_ground_it():
+    assert "gusts" in flight_conditions("light", Wind((5.0, 0.0), deviation=8.0)).grounded
+    assert "gusts" in flight_conditions("light", Weather(forecast_wind=5.0, forecast_max_wind=40.0)).grounded
+
+
+def test_a_payload_in_kilograms_is_a_load():
+    by_class, by_payload = flight_conditions("light", "mild"), flight_conditions(0.25, "mild")
+    assert by_payload.name == "load of 0.25 kg, mild disturbance"
+    assert by_payload == by_class._replace(name=by_payload.name)
+    assert flight_conditions(0.3, "mild").safe_distance == flight_conditions("moderate", "mild").safe_distance
 
 
 def test_a_class_and_a_wind_at_its_border_push_the_same():
-    assert flight_conditions("light", "mild").push == flight_conditions("light", (0, 6.0)).push
+    assert flight_conditions("light", "mild").push == flight_conditions("light", Wind((0, 6.0))).push
     assert flight_conditions("light", "mild").push == pytest.approx(PUSH)
     assert flight_conditions("light", "mild").load_ratio == pytest.approx(LOAD_RATIO)
 
@@ -277,7 +295,7 @@ def assert_same(route, other):
     }
 
 
-@pytest.mark.parametrize("disturbance", ["mild", (4.0, -2.0), (0.0, 3.0, 1.0)])
+@pytest.mark.parametrize("disturbance", ["mild", Wind((4.0, -2.0)), Weather(forecast_wind=4.0)])
 def test_conditions_that_stay_are_planned_for_once(table1, disturbance):
     assert_same(repare(table1, *FAR, disturbance=lambda _: disturbance), repare(table1, *FAR, disturbance=disturbance))
     assert len(repare(table1, *FAR, disturbance=disturbance).info["plans"]) == 1
@@ -310,9 +328,9 @@ def test_after_a_change_the_rest_is_planned_anew_and_keeps_the_new_distance(tabl
 
 
 def test_the_rest_is_what_would_be_planned_from_there(table1):
-    route = repare(table1, *FAR, disturbance=lambda clock: "mild" if clock < 5 else (0.0, -8.0))
+    route = repare(table1, *FAR, disturbance=lambda clock: "mild" if clock < 5 else Wind((0.0, -8.0)))
     here = plan_index(route, route.info["plans"][1])
-    anew = repare(table1, route.points[here], FAR[1], disturbance=(0.0, -8.0))
+    anew = repare(table1, route.points[here], FAR[1], disturbance=Wind((0.0, -8.0)))
     assert np.array_equal(route.points[here:], anew.points)
     assert route.cost == anew.cost
 
@@ -348,15 +366,13 @@ def test_an_interval_shorter_than_a_leg_looks_at_every_waypoint():
 
 def test_a_wind_that_turns_is_followed(table1):
     def turning(clock):
-        return 5 * np.cos(clock / 4), 5 * np.sin(clock / 4)
+        return Wind((5 * np.cos(clock / 4), 5 * np.sin(clock / 4)))
 
     route = repare(table1, *FAR, disturbance=turning, interval=4.0)
     assert route.reached
     assert len(route.info["plans"]) >= 5
     assert all("wind 5.0 m/s (mild" in plan.conditions for plan in route.info["plans"])
     assert is_legal(table1, table1.cell_of(route.points))
-    three = repare(table1, *FAR, disturbance=lambda clock: (*turning(clock), 0.0), interval=4.0)
-    assert_same(route, three)
 
 
 def test_conditions_of_table_3_that_ground_it_are_an_answer(table1):
@@ -368,11 +384,11 @@ def test_conditions_of_table_3_that_ground_it_are_an_answer(table1):
 
 
 def test_gusts_that_push_harder_than_the_thrust_left_over_ground_it(table1):
-    route = repare(table1, *FAR, disturbance=(0.0, 20.0, 0.0))
+    route = repare(table1, *FAR, disturbance=Weather(forecast_wind=20.0))
     loaded = LIGHT_QUADROTOR.loaded(LOADS["light"])
     assert route.reason == "grounded: " + "; ".join(grounded_by(loaded, Weather(forecast_wind=20.0)))
     assert "gusts: 35.0 m/s, and the thrust left over holds 24.6 m/s" in route.reason
-    assert repare(table1, (20, 5, 20), FAR[1], disturbance=(0.0, 12.0)).reached
+    assert repare(table1, (20, 5, 20), FAR[1], disturbance=Weather(forecast_wind=12.0)).reached
 
 
 def test_grounded_in_flight_it_stops_where_it_is(table1):
@@ -452,11 +468,13 @@ WEAK = UAV(**(vars(LIGHT_QUADROTOR) | {"thrust": 20.0}))
     [
         ({"load": "feather"}, "load must be one of 'dead', .* got 'feather'"),
         ({"disturbance": "storm"}, "disturbance must be one of 'none', .* got 'storm'"),
-        ({"disturbance": (1.0, np.nan)}, r"disturbance, if no class, \[m/s\] must be two or three finite numbers"),
-        ({"disturbance": 6.0}, r"disturbance, if no class, .* got 6\.0"),
-        ({"disturbance": None}, "disturbance, if no class, .* got None"),
+        ({"disturbance": (1.0, 2.0)}, r"disturbance must be one of .*, a Wind or a Weather, got \(1\.0, 2\.0\)"),
+        ({"disturbance": 6.0}, r"disturbance must be one of .* got 6\.0"),
+        ({"disturbance": None}, "disturbance must be one of .* got None"),
+        ({"load": -1.0}, "load must be finite and at least 0, got -1"),
+        ({"load": 3.0}, "payload must be at most 1 kg, the heaviest class, got 3"),
         ({"load": "heavy", "uav": WEAK}, r"thrust 20 N can't lift 1\.5 kg \+ payload 1 kg"),
-        ({"reading": "tea leaves"}, "reading must be 'table' or 'physical'"),
+        ({"reading": "tea leaves"}, "reading must be one of 'table', 'physical'"),
         ({"mean_offset": 1.0}, "mean_offset must be two or three finite numbers"),
         ({"mean_offset": [(1.0, 0.0, 0.0)] * 2}, "mean_offset must be two or three finite numbers"),
         ({"mean_offset": (np.inf, 0)}, "mean_offset must be two or three finite numbers"),
@@ -464,7 +482,7 @@ WEAK = UAV(**(vars(LIGHT_QUADROTOR) | {"thrust": 20.0}))
         ({"penalty": None}, "penalty must be a number .* got None"),
         ({"force_weight": np.nan}, "force_weight must be finite"),
         ({"load_weight": "1"}, "load_weight must be a number"),
-        ({"shape": "cube"}, "shape must be 'ball' or 'ring', got 'cube'"),
+        ({"zone": "cube"}, "zone must be one of 'ball', 'ring', got 'cube'"),
         ({"interval": 0.0}, "interval must be finite and above 0, got 0"),
         ({"interval": (1.0, 2.0)}, "interval must be one number"),
         ({"penalty": -1.0, "as_printed": True}, "penalty must be finite and at least 0, got -1"),
@@ -479,9 +497,9 @@ def test_bad_questions_are_refused_with_the_reason(table1, question, message):
     ("later", "message"),
     [
         ("storm", r"disturbance after 5\.\d s must be one of 'none', .* got 'storm'"),
-        (np.nan, r"disturbance after 5\.\d s, if no class, .* got nan"),
-        ((np.nan, 1.0), r"disturbance after 5\.\d s, if no class, .* got \(nan, 1\.0\)"),
-        (None, r"disturbance after 5\.\d s, if no class, .* got None"),
+        (np.nan, r"disturbance after 5\.\d s must be one of .* got nan"),
+        ((1.0, 1.0), r"disturbance after 5\.\d s must be one of .* got \(1\.0, 1\.0\)"),
+        (None, r"disturbance after 5\.\d s must be one of .* got None"),
     ],
 )
 def test_what_is_wrong_with_a_later_disturbance_is_said_with_its_time(table1, later, message):

@@ -185,7 +185,7 @@ def test_lethal_area_is_a_disc_dragged_along(height, forward, radius):
     reach = radius + PERSON_RADIUS
     dragged = shapely.LineString([(0, 0), (glide, 0)]).buffer(reach, quad_segs=200)
     area = dragged.area if glide > 0 else np.pi * reach**2
-    assert lethal_area(height, forward, fall_speed(height), radius) == pytest.approx(area, rel=1e-4)
+    assert lethal_area(height, forward, fall_speed(height), 2 * radius) == pytest.approx(area, rel=1e-4)
 
 
 def test_one_half_disc_less_is_the_area_that_casex_1_2_3_counts():
@@ -231,7 +231,7 @@ def test_lethal_area_broadcasts():
         (lambda: lethal_area(-1, 1, 1), "height must be finite and at least 0, got -1"),
         (lambda: lethal_area(1, -1, 1), "forward_speed must be finite and at least 0, got -1"),
         (lambda: lethal_area(1, 1, NAN), "fall_speed must be finite and at least 0, got nan"),
-        (lambda: lethal_area(1, 1, 1, -0.2), "uav_radius must be finite and at least 0, got -0.2"),
+        (lambda: lethal_area(1, 1, 1, -0.2), "uav_diameter must be finite and at least 0, got -0.2"),
         (lambda: lethal_area(1, 1, 1, person_radius=-1), "person_radius must be finite and at least 0"),
         (lambda: lethal_area(1, 1, 1, person_height=NAN), "person_height must be finite and at least 0"),
         (lambda: lethal_area([0, 9], 16, [0, 0]), "fall_speed must be above 0 where .* it would glide for ever"),

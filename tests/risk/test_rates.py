@@ -105,7 +105,7 @@ def test_person_rate_at_thirty_metres():
 
 def test_person_rate_is_the_product_of_its_parts():
     uav = LIGHT_QUADROTOR.loaded(0.4)
-    area = lethal_area(25.0, 7.0, fall_speed(25.0, uav), 0.5)
+    area = lethal_area(25.0, 7.0, fall_speed(25.0, uav), 1.0)
     energy = 0.5 * 1.9 * (7.0**2 + fall_speed(25.0, uav) ** 2)
     expected = 6.4e-5 * 0.004 * area * impact_fatality(energy, 0.3)
     assert person_rate(25.0, 0.004, 0.3, uav, speed=7.0) == pytest.approx(expected, rel=1e-12)

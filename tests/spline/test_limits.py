@@ -112,7 +112,7 @@ def test_at_a_corner_thrust_is_infinite_and_nothing_warns():
         thrust, tilt = tilted_thrust(corner(3), SWIFT, 1.0)
         assert np.isinf(thrust).sum() == 1
         assert np.degrees(tilt[np.isinf(thrust)]) == pytest.approx(90)
-        report = feasibility(corner(3), SWIFT, OPEN, speed=1.0)
+        report = feasibility(corner(3), OPEN, SWIFT, speed=1.0)
     assert not report.feasible
     for name in ("curvature", "thrust"):
         assert report[name].worst == np.inf
@@ -120,7 +120,7 @@ def test_at_a_corner_thrust_is_infinite_and_nothing_warns():
 
 
 def test_a_straight_level_flight_meets_all_limits():
-    report = feasibility(straight(), SWIFT, OPEN)
+    report = feasibility(straight(), OPEN, SWIFT)
     assert isinstance(report, Feasibility)
     assert report.feasible
     assert report.speed == SWIFT.cruise_speed
@@ -135,7 +135,7 @@ def test_a_straight_level_flight_meets_all_limits():
 @pytest.mark.parametrize("speed", [4.0, 16.0])
 def test_curvature_is_limited_to_what_the_bank_holds_at_that_speed(speed, bank):
     curve = circle(20.0)
-    row = feasibility(curve, SWIFT, OPEN, speed=speed, bank=np.radians(bank))["curvature"]
+    row = feasibility(curve, OPEN, SWIFT, speed=speed, bank=np.radians(bank))["curvature"]
     assert row.limit == pytest.approx(GRAVITY * np.tan(np.radians(bank)) / speed**2)
     assert row.unit == "1/m"
     assert row.worst == curve.level_curvature.max() == pytest.approx(1 / 20, rel=3e-3)
@@ -144,7 +144,7 @@ def test_curvature_is_limited_to_what_the_bank_holds_at_that_speed(speed, bank):
 
 def test_only_the_level_part_of_the_curvature_is_held_by_the_bank():
     curve = Curve([(20, 50, 50), (25, 50, 50), (30, 50, 52), (35, 50, 56)])
-    report = feasibility(curve, SWIFT, OPEN, speed=3.0)
+    report = feasibility(curve, OPEN, SWIFT, speed=3.0)
     assert report["curvature"].worst == curve.level_curvature.max()
     assert report["curvature"].worst < 0.5 * curve.curvature.max()
 
@@ -154,7 +154,7 @@ def test_clearance_is_least_where_the_curve_passes_the_box(gap):
     occupied = np.zeros((40, 20, 10), bool)
     occupied[25, 5, 5] = True
     curve = Curve([(2, 6 + gap, 5.5), (20, 6 + gap, 5.5), (38, 6 + gap, 5.5)], step=0.02)
-    report = feasibility(curve, SWIFT, City(occupied), speed=5.0)
+    report = feasibility(curve, City(occupied), SWIFT, speed=5.0)
     row = report["clearance"]
     assert row.at_least
     assert row.limit == pytest.approx(0.98 * SWIFT.diameter / 2)  # the contact that `smooth` allows
@@ -164,7 +164,7 @@ def test_clearance_is_least_where_the_curve_passes_the_box(gap):
         assert 25 - 0.1 <= row.place[0] <= 26
         assert row.distance == pytest.approx(row.place[0] - 2, abs=1e-6)
     assert row.worst <= gap
-    asked = feasibility(curve, SWIFT, City(occupied), speed=5.0, min_clearance=gap + 0.3)["clearance"]
+    asked = feasibility(curve, City(occupied), SWIFT, speed=5.0, min_clearance=gap + 0.3)["clearance"]
     assert (asked.limit, asked.met) == (gap + 0.3, False)
     assert asked.worst == pytest.approx(gap, abs=1e-3)
 
@@ -172,19 +172,19 @@ def test_clearance_is_least_where_the_curve_passes_the_box(gap):
 @pytest.mark.parametrize(("climb", "steepest", "met"), [(45.0, 60.0, True), (-45.0, 60.0, True), (-45.0, 30.0, False)])
 def test_pitch_counts_up_and_down(climb, steepest, met):
     curve = straight((1, 0, np.tan(np.radians(climb))))
-    row = feasibility(curve, SWIFT, OPEN, speed=5.0, max_pitch=np.radians(steepest))["pitch"]
+    row = feasibility(curve, OPEN, SWIFT, speed=5.0, max_pitch=np.radians(steepest))["pitch"]
     assert (row.unit, row.met) == ("°", met)
     assert row.worst == pytest.approx(45)
     assert row.limit == pytest.approx(steepest)
 
 
 def test_the_limit_of_pitch_is_by_default_that_of_the_paper():
-    assert feasibility(straight(), SWIFT, OPEN)["pitch"].limit == pytest.approx(60)
+    assert feasibility(straight(), OPEN, SWIFT)["pitch"].limit == pytest.approx(60)
 
 
 def test_thrust_tilt_and_air_speed_are_the_worst_along_the_curve():
     curve, wind = circle(40.0), (5.0, 3.0)
-    report = feasibility(curve, LIGHT_QUADROTOR, OPEN, speed=9.0, wind=wind)
+    report = feasibility(curve, OPEN, LIGHT_QUADROTOR, speed=9.0, wind=wind)
     thrust, tilt = tilted_thrust(curve, LIGHT_QUADROTOR, 9.0, wind)
     assert report["thrust"].worst == thrust.max()
     assert report["tilt"].worst == pytest.approx(np.degrees(tilt.max()))
@@ -201,13 +201,13 @@ def test_thrust_tilt_and_air_speed_are_the_worst_along_the_curve():
     ("wind", "worst"), [((0, 0), 16), ((-6, 0), 22), ((10, 0), 6), ((0, 12, 0), 20), ((0, 0, 5), 16.7631)]
 )
 def test_air_speed_is_that_against_the_wind(wind, worst):
-    row = feasibility(straight(), SWIFT, OPEN, wind=wind)["air speed"]
+    row = feasibility(straight(), OPEN, SWIFT, wind=wind)["air speed"]
     assert row.worst == pytest.approx(worst, rel=1e-5)
     assert row.met == (worst <= 20)
 
 
 def test_one_limit_that_is_not_met_is_enough():
-    report = feasibility(straight(), SWIFT, OPEN, wind=(-6, 0))
+    report = feasibility(straight(), OPEN, SWIFT, wind=(-6, 0))
     assert [limit.name for limit in report.limits if not limit.met] == ["air speed"]
     assert not report.feasible
 
@@ -216,7 +216,7 @@ def test_as_printed_the_check_passes_what_nobody_flies_at_that_speed():
     """A circle of 5 m is a curvature of 0.2 per voxel of 1 m; at 16 m/s it takes 5.3 times the weight."""
     city = City(np.zeros((200, 200, 40), bool))
     curve = circle(5.0)
-    printed = feasibility(curve, SWIFT, city, as_printed=True)
+    printed = feasibility(curve, city, SWIFT, as_printed=True)
     assert printed.feasible
     assert [(limit.name, limit.unit, limit.limit) for limit in printed.limits] == [
         ("curvature in plan", "per voxel", 1.0),
@@ -225,16 +225,16 @@ def test_as_printed_the_check_passes_what_nobody_flies_at_that_speed():
     ]
     assert printed["heading change"].worst == pytest.approx(np.degrees(1 / 5), rel=0.05)
     assert printed["curvature in plan"].worst == pytest.approx(0.2, rel=3e-3)
-    right = feasibility(curve, SWIFT, city)
+    right = feasibility(curve, city, SWIFT)
     assert [limit.name for limit in right.limits if not limit.met] == ["curvature", "thrust", "tilt"]
     assert right["thrust"].worst / SWIFT.weight == pytest.approx(np.hypot(1, 16**2 / 5 / GRAVITY), rel=5e-3)
-    slow = feasibility(curve, SWIFT, city, speed=3.0, as_printed=True)
+    slow = feasibility(curve, city, SWIFT, speed=3.0, as_printed=True)
     assert slow.limits == printed.limits  # it doesn't know the speed
 
 
 @pytest.mark.parametrize("cell", [1.0, 4.0, 6.0])
 def test_as_printed_a_curve_is_the_less_flyable_the_larger_the_voxels(cell):
-    row = feasibility(circle(5.0), SWIFT, City(np.zeros((40, 40, 10), bool), cell), as_printed=True)[
+    row = feasibility(circle(5.0), City(np.zeros((40, 40, 10), bool), cell), SWIFT, as_printed=True)[
         "curvature in plan"
     ]
     assert row.worst == pytest.approx(cell / 5, rel=3e-3)
@@ -248,8 +248,8 @@ def test_feasibility_flips_at_the_greatest_speed(uav, wind, radius):
     curve = circle(radius)
     speed = greatest_speed(curve, uav, wind)
     assert speed > 0
-    assert feasibility(curve, uav, OPEN, speed=speed, wind=wind).feasible
-    assert not feasibility(curve, uav, OPEN, speed=speed + 0.0011, wind=wind).feasible
+    assert feasibility(curve, OPEN, uav, speed=speed, wind=wind).feasible
+    assert not feasibility(curve, OPEN, uav, speed=speed + 0.0011, wind=wind).feasible
 
 
 @pytest.mark.parametrize("bank", [10.0, 25.0])
@@ -293,9 +293,9 @@ def test_in_a_strong_tail_wind_the_speeds_that_work_begin_above_0():
     slow = replace(LIGHT_QUADROTOR.loaded(0.83), cruise_speed=5.0, top_speed=11.9)
     speed, wind = greatest_speed(straight(), slow, (38.9, 0)), (38.9, 0)
     assert speed == pytest.approx(50.8, abs=0.1)
-    assert feasibility(straight(), slow, OPEN, speed=speed, wind=wind, bank=np.pi / 4).feasible
-    assert not feasibility(straight(), slow, OPEN, speed=speed + 0.01, wind=wind, bank=np.pi / 4).feasible
-    assert not feasibility(straight(), slow, OPEN, speed=20.0, wind=wind).feasible
+    assert feasibility(straight(), OPEN, slow, speed=speed, wind=wind, bank=np.pi / 4).feasible
+    assert not feasibility(straight(), OPEN, slow, speed=speed + 0.01, wind=wind, bank=np.pi / 4).feasible
+    assert not feasibility(straight(), OPEN, slow, speed=20.0, wind=wind).feasible
 
 
 def through(*points):
@@ -309,7 +309,7 @@ def through(*points):
 )
 def test_outside_of_the_map_nothing_may_fly(point, inside):
     """Before, a curve 57 m below the ground or 80 m beside the map was feasible."""
-    report = feasibility(through((20, 100, 50), point), RISK_QUADROTOR, OPEN, speed=0.5, max_pitch=np.pi / 2)
+    report = feasibility(through((20, 100, 50), point), OPEN, RISK_QUADROTOR, speed=0.5, max_pitch=np.pi / 2)
     assert report["map"].worst == pytest.approx(inside, abs=1e-6)
     assert report["map"].met == (inside >= 0)
     assert report["map"].place == pytest.approx(point if inside != 20 else (20, 100, 50), abs=0.2)
@@ -329,7 +329,7 @@ def test_heights_are_those_above_each_column_that_the_curve_passes(seed):
     """Against points a centimetre apart: never more than the least of them, and hardly less."""
     city, rng = hilly(seed), np.random.default_rng(seed)
     curve = Curve(rng.uniform([10, 10, 30], [190, 190, 90], (7, 3)), step=0.5)
-    report = feasibility(curve, RISK_QUADROTOR, city, min_height=20.0, max_height=60.0, safe_height=12.0)
+    report = feasibility(curve, city, RISK_QUADROTOR, min_height=20.0, max_height=60.0, safe_height=12.0)
     points = replace(curve, step=0.01).points
     i, j, k = ((points - city.origin) // city.cell).astype(int).T
     lowest, highest = (layer[i, j] for layer in city.range_of_ground)
@@ -343,17 +343,17 @@ def test_heights_are_those_above_each_column_that_the_curve_passes(seed):
 
 def test_a_no_fly_zone_is_a_limit_where_there_is_one():
     closed = replace(OPEN, no_fly=(NoFlyZone(np.array([(90, 90), (110, 90), (110, 110), (90, 110)]), name="dome"),))
-    report = feasibility(straight(length=150), RISK_QUADROTOR, closed)
+    report = feasibility(straight(length=150), closed, RISK_QUADROTOR)
     assert not report["distance to no-fly zones"].met
-    assert feasibility(straight(length=60), RISK_QUADROTOR, closed)["distance to no-fly zones"].worst == 10.0
-    assert "distance to no-fly zones" not in [limit.name for limit in feasibility(straight(), SWIFT, OPEN).limits]
+    assert feasibility(straight(length=60), closed, RISK_QUADROTOR)["distance to no-fly zones"].worst == 10.0
+    assert "distance to no-fly zones" not in [limit.name for limit in feasibility(straight(), OPEN, SWIFT).limits]
 
 
 @pytest.mark.parametrize(("rise", "name"), [(1.0, "climb rate"), (-0.8, "sink rate")])
 def test_climb_and_descent_are_limited_by_what_the_uav_can(rise, name):
     curve = straight((1.0, 0.0, rise))
     vertical = 8.0 * abs(rise) / np.hypot(1, rise)
-    report = feasibility(curve, RISK_QUADROTOR, OPEN, speed=8.0)
+    report = feasibility(curve, OPEN, RISK_QUADROTOR, speed=8.0)
     assert report[name].worst == pytest.approx(vertical)
     assert report[name].limit == {"climb rate": 6.0, "sink rate": 4.0}[name]
     assert report.feasible == (vertical <= report[name].limit)
@@ -364,11 +364,11 @@ def test_climb_and_descent_are_limited_by_what_the_uav_can(rise, name):
 def test_the_heading_changes_by_the_voxel_over_the_radius(radius):
     cell = 2.0
     city = City(np.zeros((100, 100, 20), bool), cell)
-    row = feasibility(circle(radius), SWIFT, city, max_turn=np.radians(20))["heading change"]
+    row = feasibility(circle(radius), city, SWIFT, max_turn=np.radians(20))["heading change"]
     assert row.worst == pytest.approx(np.degrees(cell / radius), rel=0.06)
     assert row.met == (radius == 8.0)
     up = through((20, 20, 10), (20, 20, 30), (40, 20, 30))
-    assert feasibility(up, SWIFT, OPEN, max_turn=1.0, max_pitch=np.pi / 2)["heading change"].worst == 0
+    assert feasibility(up, OPEN, SWIFT, max_turn=1.0, max_pitch=np.pi / 2)["heading change"].worst == 0
 
 
 def test_the_printed_curvature_names_its_reading():
@@ -376,21 +376,21 @@ def test_the_printed_curvature_names_its_reading():
     angle = np.radians(5) * np.arange(100)
     helix = Curve(np.column_stack([100 + 5 * np.cos(angle), 100 + 5 * np.sin(angle), 50 + 5 * angle]), step=0.1)
     city = City(np.zeros((200, 200, 200), bool))
-    plan, space = (feasibility(helix, SWIFT, city, as_printed=True, reading=by) for by in ("plan", "space"))
+    plan, space = (feasibility(helix, city, SWIFT, as_printed=True, reading=by) for by in ("plan", "space"))
     middle = len(helix.points) // 2
     assert plan["curvature in plan"].worst == pytest.approx(1 / 5, rel=0.02)
     assert helix.curvature[middle] == pytest.approx(5 / 50, rel=0.02)
     assert space["curvature in space"].worst == pytest.approx(helix.curvature.max())
     dip = Curve([(20, 20, 30), (40, 20, 30), (50, 20, 20), (60, 20, 30), (80, 20, 30)])
-    assert feasibility(dip, SWIFT, city, as_printed=True)["curvature in plan"].worst == pytest.approx(0, abs=1e-9)
-    assert feasibility(dip, SWIFT, city, as_printed=True, reading="space")["curvature in space"].worst > 0.05
+    assert feasibility(dip, city, SWIFT, as_printed=True)["curvature in plan"].worst == pytest.approx(0, abs=1e-9)
+    assert feasibility(dip, city, SWIFT, as_printed=True, reading="space")["curvature in space"].worst > 0.05
     for by in ("plan", "space"):
-        sharp = feasibility(corner(3), SWIFT, city, as_printed=True, reading=by)
+        sharp = feasibility(corner(3), city, SWIFT, as_printed=True, reading=by)
         assert sharp[f"curvature in {by}"].worst == np.inf
 
 
 def test_the_report_is_a_table_to_print():
-    report = feasibility(circle(5.0), SWIFT, OPEN)
+    report = feasibility(circle(5.0), OPEN, SWIFT)
     lines = str(report).splitlines()
     assert lines[0].split() == ["limit", "at", "16", "m/s", "worst", "after,", "at", "met"]
     assert [line.split("  ")[0] for line in lines[1:]] == NAMES
@@ -408,7 +408,7 @@ def test_the_report_is_a_table_to_print():
 
 
 def test_the_report_is_a_table_in_a_notebook():
-    report = feasibility(circle(5.0), SWIFT, OPEN)
+    report = feasibility(circle(5.0), OPEN, SWIFT)
     page = report._repr_html_()
     assert page.startswith("<table>")
     assert page.endswith("</table>")
@@ -421,7 +421,7 @@ def test_the_report_is_a_table_in_a_notebook():
 
 def test_an_unknown_limit_is_refused_with_those_that_are():
     with pytest.raises(ValueError, match=r"name must be one of 'clearance', 'map', 'height', .* got 'comfort'"):
-        feasibility(straight(), SWIFT, OPEN)["comfort"]
+        feasibility(straight(), OPEN, SWIFT)["comfort"]
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ clearance, time, energy. A monitor may change how it is flown while the weather 
 """
 
 from uavlab.flight.autopilot import GPS, PERFECT_GPS, Autopilot, Gps
-from uavlab.flight.disturbance import OffsetProcess, Wind, gust_spectrum, offset_sigma
+from uavlab.flight.disturbance import OffsetProcess, offset_sigma
 from uavlab.flight.results import Energy, Flight, Flights, Rate, crash_rate
 from uavlab.flight.simulation import fly, monte_carlo
 
@@ -20,10 +20,8 @@ __all__ = [
     "Gps",
     "OffsetProcess",
     "Rate",
-    "Wind",
     "crash_rate",
     "fly",
-    "gust_spectrum",
     "monte_carlo",
     "offset_sigma",
 ]

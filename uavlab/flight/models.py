@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uavlab.flight.autopilot import Autopilot
-from uavlab.flight.disturbance import GUSTS, OffsetProcess, Wind, gust_deviations
+from uavlab.flight.disturbance import OffsetProcess
 from uavlab.flight.motion import Air, Body, Spring, State, drift_on, fly_on
 from uavlab.flight.path import Path
 from uavlab.power import profile_share
@@ -16,6 +16,7 @@ from uavlab.resilience import Controller
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import dryden_parameters, rain_force
 from uavlab.weather.turbulence import OUTPUT, lag_step
+from uavlab.weather.wind import GUSTS, Wind, gust_deviations
 
 
 class Model(NamedTuple):

@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uavlab.flight.disturbance import Wind, gust_deviations
 from uavlab.route import Route
 from uavlab.spline.curve import BANK
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import ground_speed_held, rain_force, wind_drag
-from uavlab.weather.envelope import limits_broken
+from uavlab.weather.envelope import CREEP
+from uavlab.weather.wind import Wind
 
 TURN_JUMP = 1.0
 """By how much the velocity may jump at a waypoint [m/s]; the autopilot begins to turn a moment before."""
@@ -21,9 +21,6 @@ BRAKING = 2.0
 
 LEAST_AGILITY = 0.1
 """Of a UAV that a wind which came in flight leaves nothing [m/s²]."""
-
-CREEP = 0.1
-"""With what a flight begins and ends [m/s]."""
 
 
 class Path(NamedTuple):
@@ -86,10 +83,3 @@ def level_thrust(uav: UAV, wind: Wind) -> tuple[float, float]:
     held = float(uav.horizontal_reserve(rain_force(wind.rain_mm_per_h, uav.rain_area)))
     drag = wind_drag(wind.mean, (0.0, 0.0, 0.0), uav.drag_area, air_density=wind.air_density)
     return held, float(np.linalg.norm(drag))
-
-
-def why_grounded(uav: UAV, wind: Wind, altitude: float) -> str:
-    """Why a UAV stays on the ground in a wind, `grounded_by`; its strongest gust is 3σ above the mean."""
-    gust = wind.speed + 3 * float(gust_deviations(wind, altitude)[0])
-    rain = float(rain_force(wind.rain_mm_per_h, uav.rain_area))
-    return "; ".join(limits_broken(uav, wind.speed, gust, rain, wind.air_density, CREEP))

@@ -14,7 +14,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.voxels import distance_to_obstacle
 from uavlab.flight.autopilot import AUTOPILOT, PERFECT_GPS, Autopilot
-from uavlab.flight.disturbance import OffsetProcess, Wind
+from uavlab.flight.disturbance import OffsetProcess
 from uavlab.flight.models import Model, model_of
 from uavlab.flight.motion import (
     ARRIVED,
@@ -29,17 +29,20 @@ from uavlab.flight.motion import (
     State,
     steps_to_goal,
 )
-from uavlab.flight.path import CREEP, Path, constant_speed, planned_speed, why_grounded
+from uavlab.flight.path import Path, constant_speed, planned_speed
 from uavlab.flight.results import Energy, Flight, Flights
 from uavlab.resilience import ADVANCED, BASIC, Controller
-from uavlab.route import Route
+from uavlab.route import Route, as_route
 from uavlab.spline import Curve
 from uavlab.spline.curve import CONTACT
 from uavlab.sweep import sweep
 from uavlab.vehicle import GRAVITY, UAV
+from uavlab.weather import Weather, Wind
+from uavlab.weather.envelope import CREEP
 from uavlab.weather.turbulence import HIGHEST, LOWEST
+from uavlab.weather.wind import why_grounded, wind_of
 
-Disturbance = Wind | OffsetProcess | Callable[[float], Wind | OffsetProcess]
+Disturbance = Wind | Weather | OffsetProcess | Callable[[float], Wind | Weather | OffsetProcess]
 
 TIME_STEP = 0.02
 LONGEST_TURN = 0.2
@@ -119,8 +122,9 @@ def fly(
     uav : UAV
         Its body is a ball of its diameter; it collides when that touches an obstacle. `City.ground` is one; the open
         floor of a city without it is none.
-    disturbance : Wind, OffsetProcess, or callable
-        Or a function of the time [s] that returns one of these, always the same kind.
+    disturbance : Wind, Weather, OffsetProcess, or callable
+        What the air does, or the offsets themselves; or a function of the time [s] that returns one of these, always
+        the same kind.
     autopilot : Autopilot
     rng : numpy.random.Generator or int
         The seed of `monte_carlo`, whose flight this is.
@@ -243,8 +247,7 @@ def setup_of(
     checks.instance("city", city, City)
     checks.instance("uav", uav, UAV)
     checks.instance("autopilot", autopilot, Autopilot)
-    way = route.route() if isinstance(route, Curve) else route
-    checks.instance("route", way, Route)
+    way = as_route(route)
     if not way.reached or not way.length > 0:
         raise ValueError(f"route must lead from a start to a goal{': ' * bool(way.reason)}{way.reason}")
     time_step = checks.positive_number("time_step", time_step)
@@ -281,7 +284,7 @@ def setup_of(
             )
         grounded = why_grounded(flown_by(uav, first_controller(autopilot)), first, altitude)
         if grounded and autopilot.heeds_limits:
-            return None, grounded
+            return None, "; ".join(grounded)
     touching = (1 - CONTACT) * uav.diameter / 2
     near_goal = autopilot.acceptance_radius if isinstance(first, Wind) else np.inf
     space = Obstacles(city.occupied, city.runs, city.clearance, city.origin, city.cell, touching, near_goal)
@@ -300,9 +303,11 @@ def now_of(disturbance: Disturbance, time: float) -> Wind | OffsetProcess:
     if isinstance(disturbance, type):
         raise ValueError(f"disturbance must be one {disturbance.__name__}, as {disturbance.__name__}(), got its class")
     now = disturbance(time) if callable(disturbance) else disturbance
-    if not isinstance(now, Wind | OffsetProcess):
-        raise ValueError(f"disturbance must be a Wind or an OffsetProcess, or return one, got {type(now).__name__}")
-    return now
+    if not isinstance(now, Wind | Weather | OffsetProcess):
+        raise ValueError(
+            f"disturbance must be a Wind, a Weather or an OffsetProcess, or return one, got {type(now).__name__}"
+        )
+    return now if isinstance(now, OffsetProcess) else wind_of(now)
 
 
 def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:

@@ -17,7 +17,6 @@ from uavlab import checks
 from uavlab.planners.advice import what_binds
 from uavlab.planners.ants import Colony, Habits, forage_and_split
 from uavlab.planners.risk_question import (
-    MAX_PITCH,
     MAX_TURN,
     Limits,
     Query,
@@ -34,6 +33,7 @@ from uavlab.planners.risk_question import (
 from uavlab.planners.risk_search import solve
 from uavlab.risk import RiskMap
 from uavlab.route import Route
+from uavlab.spline.limits import MAX_PITCH
 
 ANTS, PRINTED_ITERATIONS = 10, 50
 """m and NC_max (RISK-ACO Table 3)."""

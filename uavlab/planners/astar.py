@@ -26,7 +26,7 @@ from uavlab.planners.grid import (
     steps_of,
 )
 from uavlab.planners.heap import open_list, pop, push, sparse_array
-from uavlab.planners.question import Airspace, checked_price, endpoints
+from uavlab.planners.question import Airspace, checked_price, endpoints, timed
 from uavlab.route import Route
 
 TIE_BREAK = 1 + 1e-9
@@ -87,6 +87,7 @@ def astar(
     ValueError
         If start or goal can't be flown from or to, both lie in one voxel, or an argument is out of its range.
     """
+    began = time.perf_counter()
     checks.one_of("heuristic", heuristic, HEURISTICS)
     checks.flag("as_printed", as_printed)
     if as_printed and price is None:
@@ -105,7 +106,8 @@ def astar(
         as_printed=as_printed,
         record=record,
     )
-    return ends.added_to(route, None if as_printed else prices, priced="" if price is None else "price")
+    route = ends.added_to(route, None if as_printed else prices, priced="" if price is None else "price")
+    return timed(route, began)
 
 
 def cheapest_route(
@@ -124,7 +126,6 @@ def cheapest_route(
 
     To look for a minimum among a million prices takes a tenth of the time of a search.
     """
-    began = time.perf_counter()
     g = sparse_array(np.empty, city.occupied.size, np.float64)
     parent = sparse_array(np.zeros, city.occupied.size, np.uint8)
     backwards = prices is not None and not as_printed and prices.flat[source] < prices.flat[target]
@@ -142,7 +143,7 @@ def cheapest_route(
         open_list(city.occupied.size),
         record,
     )
-    info = {"expanded": expanded, "elapsed": time.perf_counter() - began, "heuristic": heuristic}
+    info = {"expanded": expanded, "heuristic": heuristic}
     if record:
         info["order"] = order[:expanded]
     if parent[last] == UNSEEN:
@@ -158,12 +159,10 @@ def no_way(city: City, source: int, target: int, reach: int) -> Route:
     reason = (
         f"no free way from {checks.show(start)} to {checks.show(goal)}: all {reach} voxels within reach were searched"
     )
-    return Route(np.empty((0, 3)), "A*", reached=False, reason=reason, cost=np.inf)
+    return Route.none("A*", reason)
 
 
-def penalty_zone(
-    city: City, safe_distance: npt.ArrayLike, *, penalty: npt.ArrayLike, shape: str = "ball"
-) -> np.ndarray:
+def penalty_zone(city: City, safe_distance: npt.ArrayLike, *, penalty: npt.ArrayLike, zone: str = "ball") -> np.ndarray:
     """Price per metre 1 + ω·O_risk: 1 in the open, more near obstacles (REPARE Eq. 12).
 
     Parameters
@@ -173,7 +172,7 @@ def penalty_zone(
         D_min [m] (Eq. 7), typically 3.5 to 5.5: O_risk = 1 where an obstacle is nearer.
     penalty : float or (nx, ny, nz) array
         ω, at least 0; typically 0.1 to 2.
-    shape : {"ball", "ring"}
+    zone : {"ball", "ring"}
         "ball" measures the distance to the nearest surface. "ring" looks, as the paper does, only at the 26 points
         of the outer ring, r cells away along each axis; r is the least with r + ½ cells ≥ D_min. It looks through
         walls thinner than r cells and between its points.
@@ -194,15 +193,13 @@ def penalty_zone(
     for name, values in (("safe_distance", distance), ("penalty", weight)):
         if values.shape not in ((), city.shape):
             raise ValueError(f"{name} must be one number or have the city's shape {city.shape}, got {values.shape}")
-    if shape == "ball":
+    if checks.one_of("zone", zone, ("ball", "ring")) == "ball":
         near = city.clearance < distance - 1e-9 * city.cell
-    elif shape == "ring":
+    else:
         radii = np.maximum(1, np.ceil(distance / city.cell - 0.5 - 1e-9)).astype(int)
         near = np.zeros(city.shape, dtype=bool)
         for radius in np.unique(radii):
             near |= (radii == radius) & ring_meets_obstacle(city.occupied, int(radius))
-    else:
-        raise ValueError(f"shape must be 'ball' or 'ring', got {shape!r}")
     return 1.0 + weight * near
 
 

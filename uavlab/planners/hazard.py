@@ -7,6 +7,7 @@ fast. As a price per metre it lets a route pass a gap quickly where that is wort
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -18,12 +19,12 @@ from uavlab.city.kept import kept_for_city
 from uavlab.city.model import locked
 from uavlab.offsets import crossing_rate
 from uavlab.planners.astar import cheapest_route
-from uavlab.planners.question import Airspace, endpoints
+from uavlab.planners.question import Airspace, endpoints, timed
 from uavlab.planners.shortcut import shortcut
 from uavlab.route import Route
 
-RADIUS = 0.5
-"""Half of the papers' body [m]."""
+DIAMETER = 1.0
+"""Of the papers' body [m]."""
 
 NO_HAZARD = 40.0
 """So many σ away the chance is no number above 0."""
@@ -36,7 +37,7 @@ def hazard_price(
     city: City,
     sigma: float,
     *,
-    uav_radius: float = RADIUS,
+    uav_diameter: float = DIAMETER,
     mean_offset: npt.ArrayLike = (0.0, 0.0, 0.0),
     speed: float = 5.0,
     natural_frequency: float = 1.0,
@@ -49,9 +50,9 @@ def hazard_price(
     city : City
     sigma : float
         σ of the offset on one axis [m], above 0.
-    uav_radius : float
-        r [m], at least 0. The margin is u = D − r, at least 0, with D the least distance to obstacles on the way from
-        the route to where the mean offset holds the UAV.
+    uav_diameter : float
+        D_uav [m], at least 0. The margin is u = D − D_uav/2, at least 0, with D the least distance to obstacles on the
+        way from the route to where the mean offset holds the UAV.
     mean_offset : (2,) or (3,) array
         μ, where the steady wind holds the UAV, from its route [m]. Away from a wall it gives no credit.
     speed : float
@@ -73,17 +74,19 @@ def hazard_price(
     """
     for name, value in (("speed", speed), ("sigma", sigma), ("natural_frequency", natural_frequency)):
         checks.positive_number(name, value)
-    for name, value in (("uav_radius", uav_radius), ("crash_price", crash_price)):
+    for name, value in (("uav_diameter", uav_diameter), ("crash_price", crash_price)):
         checks.not_negative_number(name, value)
     mean = checks.three("mean_offset", mean_offset)
-    return cached_price(city, float(sigma), float(uav_radius), mean, float(crash_price * natural_frequency / speed))
+    return cached_price(
+        city, float(sigma), float(uav_diameter) / 2, mean, float(crash_price * natural_frequency / speed)
+    )
 
 
 @kept_for_city(4)
 def cached_price(
-    city: City, sigma: float, uav_radius: float, mean_offset: tuple[float, ...], crash_price: float
+    city: City, sigma: float, radius: float, mean_offset: tuple[float, ...], crash_price: float
 ) -> np.ndarray:
-    margin = city.clearance_along(mean_offset, at_most=uav_radius + NO_HAZARD * sigma) - uav_radius
+    margin = city.clearance_along(mean_offset, at_most=radius + NO_HAZARD * sigma) - radius
     return locked(1.0 + crash_price * crossing_rate(np.maximum(margin, 0.0), sigma))
 
 
@@ -93,11 +96,14 @@ def hazard_astar(
     goal: npt.ArrayLike,
     *,
     sigma: float,
-    uav_radius: float = RADIUS,
+    uav_diameter: float = DIAMETER,
     any_angle: bool = True,
     min_height: float = 0.0,
     max_height: float = np.inf,
-    **hazard: float | npt.ArrayLike,
+    mean_offset: npt.ArrayLike = (0.0, 0.0, 0.0),
+    speed: float = 5.0,
+    natural_frequency: float = 1.0,
+    crash_price: float = CRASH_PRICE,
 ) -> Route:
     """The route of least length plus hazard, over 26 neighbours, then by straight lines at the same price.
 
@@ -108,13 +114,13 @@ def hazard_astar(
         Positions [m].
     sigma : float
         σ of the offset on one axis [m], above 0.
-    uav_radius : float
-        Half the body [m]: nothing on the route is nearer to an obstacle.
+    uav_diameter : float
+        Of the body [m]: nothing on the route is nearer to an obstacle than half of it.
     any_angle : bool
         Join by straight lines what that makes no dearer, see `shortcut`.
     min_height, max_height : float
         As for `astar` [m].
-    **hazard
+    mean_offset, speed, natural_frequency, crash_price
         As for `hazard_price`.
 
     Returns
@@ -127,11 +133,15 @@ def hazard_astar(
     ValueError
         If start or goal can't be flown from or to, or an argument is out of its range.
     """
-    price = hazard_price(city, sigma, uav_radius=uav_radius, **hazard)  # type: ignore[arg-type]
-    airspace = Airspace(city, 0.0, min_height, max_height, radius=uav_radius)
+    began = time.perf_counter()
+    price = hazard_price(
+        city, sigma, uav_diameter=uav_diameter, mean_offset=mean_offset, speed=speed,
+        natural_frequency=natural_frequency, crash_price=crash_price,
+    )  # fmt: skip
+    airspace = Airspace(city, 0.0, min_height, max_height, radius=uav_diameter / 2)
     ends = endpoints(airspace, start, goal)
     route = cheapest_route(city, ends.source, ends.target, airspace.blocked, price, cheapest=1.0)
     route = ends.added_to(route, price, priced="hazard")
     if any_angle:
         route = shortcut(route, city, price=price)
-    return replace(route, planner="hazard A*")
+    return timed(replace(route, planner="hazard A*"), began)

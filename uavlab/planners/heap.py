@@ -32,7 +32,9 @@ class OpenList(NamedTuple):
 def open_list(nodes: int) -> OpenList:
     """An empty list with room for nodes 0 … nodes − 1."""
     code = code_type(nodes)
-    return OpenList(np.empty(nodes + 1, code), np.empty(nodes + 1), sparse_array(np.zeros, nodes, code), np.zeros(1, np.int64))
+    return OpenList(
+        np.empty(nodes + 1, code), np.empty(nodes + 1), sparse_array(np.zeros, nodes, code), np.zeros(1, np.int64)
+    )
 
 
 def code_type(nodes: int) -> type:

@@ -21,10 +21,14 @@ from uavlab.compiled import compiled
 from uavlab.planners.astar import COST_ROUNDING, START, TIE_BREAK, UNSEEN, trace
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around_node, steps_of
 from uavlab.planners.heap import open_list, pop, push, sparse_array
-from uavlab.planners.question import Airspace, endpoints
+from uavlab.planners.question import Airspace, endpoints, timed
 from uavlab.power import energy_per_metre
 from uavlab.route import Route
-from uavlab.vehicle import STANDARD_AIR, UAV
+from uavlab.vehicle import UAV
+from uavlab.weather import Weather, Wind
+from uavlab.weather.wind import wind_of
+
+CALM = Wind(gusts="none")
 
 
 def least_energy(
@@ -32,11 +36,9 @@ def least_energy(
     start: npt.ArrayLike,
     goal: npt.ArrayLike,
     uav: UAV,
-    wind: npt.ArrayLike = (0.0, 0.0, 0.0),
+    disturbance: Wind | Weather = CALM,
     *,
     speed: float | None = None,
-    rain_mm_per_h: float = 0.0,
-    air_density: float = STANDARD_AIR,
     min_clearance: float = 0.0,
     min_height: float = 0.0,
     max_height: float = np.inf,
@@ -52,14 +54,10 @@ def least_energy(
     start, goal : (3,) arrays
         Positions [m].
     uav : UAV
-    wind : (2,) or (3,) array
-        Mean wind, where the air moves to [m/s].
+    disturbance : Wind or Weather
+        Its mean wind, rain and air; by default none moves.
     speed : float, optional
         Over ground, where nothing limits it [m/s]; by default the UAV's cruise speed.
-    rain_mm_per_h : float
-        [mm/h]
-    air_density : float
-        [kg/m³]
     min_clearance, min_height, max_height
         As for `astar`.
 
@@ -74,29 +72,34 @@ def least_energy(
     ValueError
         If start or goal can't be flown from or to, both lie in one voxel, or an argument is out of its range.
     """
+    began = time.perf_counter()
     checks.instance("uav", uav, UAV)
+    air = wind_of(disturbance)
     airspace = Airspace(city, min_clearance, min_height, max_height)
     ends = endpoints(airspace, start, goal)
     per_metre = partial(
-        energy_per_metre, uav, wind=wind, speed=speed, rain_mm_per_h=rain_mm_per_h, air_density=air_density
-    )
-    began = time.perf_counter()
+        energy_per_metre, uav, wind=air.mean, speed=speed, rain_mm_per_h=air.rain_mm_per_h,
+        air_density=air.air_density,
+    )  # fmt: skip
     costs = city.cell * LENGTHS * per_metre(MOVES)
-    g, parent = sparse_array(np.empty, city.occupied.size, np.float64), sparse_array(np.zeros, city.occupied.size, np.uint8)
+    g, parent = (
+        sparse_array(np.empty, city.occupied.size, np.float64),
+        sparse_array(np.zeros, city.occupied.size, np.uint8),
+    )
     expanded = search(
         airspace.blocked, costs, slopes_of(costs), ends.source, ends.target, g, parent, open_list(city.occupied.size)
     )
-    info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
+    info = {"expanded": expanded}
     if parent[ends.target] == UNSEEN:
         ways = (
             f"the wind leaves {np.isfinite(costs).sum()} of 26 directions" if np.isinf(costs).any() else "no free way"
         )
         reason = f"{ways}: all {np.count_nonzero(parent)} voxels within reach were searched"
-        return Route(np.empty((0, 3)), "least energy", reached=False, reason=reason, cost=np.inf, info=info)
+        return timed(Route.none("least energy", reason, **info), began)
     nodes = trace(parent, ends.source, ends.target, city.shape)
     route = ends.added_to(Route(city.center_of(city.index_of(nodes)), "least energy", info=info), priced="energy")
     legs = np.diff(route.points, axis=0)
-    return replace(route, cost=float((route.leg_lengths * per_metre(legs)).sum()))
+    return timed(replace(route, cost=float((route.leg_lengths * per_metre(legs)).sum())), began)
 
 
 def slopes_of(costs: np.ndarray) -> np.ndarray:

@@ -14,7 +14,6 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.planners.advice import what_binds
 from uavlab.planners.risk_question import (
-    MAX_PITCH,
     MAX_TURN,
     Weights,
     checked_length,
@@ -29,6 +28,7 @@ from uavlab.planners.risk_question import (
 from uavlab.planners.risk_search import constrained, costs_nothing, shortest_of_cheapest, solve
 from uavlab.risk import RiskMap
 from uavlab.route import Route
+from uavlab.spline.limits import MAX_PITCH
 
 
 def least_risk(

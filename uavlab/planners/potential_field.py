@@ -17,7 +17,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.compiled import compiled
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around
-from uavlab.planners.question import Airspace, endpoints
+from uavlab.planners.question import Airspace, endpoints, timed
 from uavlab.planners.shortcut import line_cost
 from uavlab.route import Route
 
@@ -97,23 +97,22 @@ def potential_field(
     Returns
     -------
     Route
-        `cost` is the length; `info["steps"]` and `info["elapsed"]` [s]. If it is trapped, flies into an obstacle or
-        gives up, `reached` is False, `reason` says where, and the points are the way until there.
+        `cost` is the length; `info["expanded"]`, its steps, and `info["elapsed"]` [s]. If it is trapped, flies into an
+        obstacle or gives up, `reached` is False, `reason` says where, and the points are the way until there.
 
     Raises
     ------
     ValueError
         If start or goal can't be flown from or to, or an argument is out of its range.
     """
+    began = time.perf_counter()
     checks.instance("city", city, City)
-    if moves not in ("lattice", "continuous"):
-        raise ValueError(f"moves must be 'lattice' or 'continuous', got {moves!r}")
+    checks.one_of("moves", moves, ("lattice", "continuous"))
     step = city.cell / 2 if step is None else step
     checks.positive_number("step", step)
     checks.whole("max_steps", max_steps, least=1)
     airspace = Airspace(city, 0.0, min_height, max_height)
     ends = endpoints(airspace, start, goal)
-    began = time.perf_counter()
     first, last = city.index_of([ends.source, ends.target])
     begin, aim = city.center_of([first, last])
     if moves == "continuous":
@@ -126,7 +125,7 @@ def potential_field(
     else:
         points, outcome = walk_freely(field, begin - city.origin, float(step), max_steps)
         points = points + city.origin
-    info: dict = {"steps": len(points) - 1, "elapsed": time.perf_counter() - began}
+    info: dict = {"expanded": len(points) - 1}
     if record:
         pulls, pushes, _ = forces_at(field, points - city.origin)
         info |= {"attraction": pulls, "repulsion": pushes}
@@ -135,7 +134,7 @@ def potential_field(
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     cost = np.inf if reason else length
     route = Route(points, "potential field", reached=not reason, reason=reason, cost=cost, info=info)
-    return ends.added_to(route)
+    return timed(ends.added_to(route), began)
 
 
 ARRIVED, TRAPPED, CIRCLES, CRASHED, FORBIDDEN, GAVE_UP = range(6)

@@ -7,6 +7,7 @@ voxel above it that is high enough, and the vertical legs are added to what it f
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -78,6 +79,11 @@ class Ends(NamedTuple):
             takeoff=len(before),
             landing=len(after) if route.reached else 0,
         )
+
+
+def timed(route: Route, began: float) -> Route:
+    """The answer with the time since the question was asked, in `info["elapsed"]` [s]."""
+    return replace(route, info=route.info | {"elapsed": time.perf_counter() - began})
 
 
 def endpoints(airspace: Airspace, start: npt.ArrayLike, goal: npt.ArrayLike) -> Ends:

@@ -9,9 +9,10 @@ the route is planned again.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,19 +23,12 @@ from uavlab.city.kept import kept_for_city
 from uavlab.city.model import locked
 from uavlab.planners.astar import cheapest_route, penalty_zone
 from uavlab.planners.potential_field import repulsion
-from uavlab.planners.question import Airspace, checked_price, endpoints, nearest_allowed
-from uavlab.resilience import (
-    DISTURBANCES,
-    LOADS,
-    disturbance_class,
-    gust_force,
-    physical_distance,
-    resilience_level,
-    safe_distance,
-)
+from uavlab.planners.question import Airspace, checked_price, endpoints, nearest_allowed, timed
+from uavlab.resilience import gust_force, kind_and_speed, load_class, payload_of, resilience_level, safe_distance
 from uavlab.route import Route
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
-from uavlab.weather import Weather, grounded_by
+from uavlab.weather import Weather, Wind, grounded_by
+from uavlab.weather.wind import why_grounded, wind_of
 
 PENALTY = 2.0
 """ω₀: what a metre in the zone costs more, before any force."""
@@ -48,7 +42,7 @@ class Conditions(NamedTuple):
     """Why it may not fly; empty if it may."""
     safe_distance: float
     """D_min [m]."""
-    wind: tuple[float, float, float] | None
+    wind: tuple[float, ...] | None
     """Mean wind [m/s]; None where only its class is known, so that it may come from any side."""
     push: float
     """Drag of the gusts over the thrust that is left against them, |F_dist|."""
@@ -61,15 +55,15 @@ def repare(
     start: npt.ArrayLike,
     goal: npt.ArrayLike,
     *,
-    load: str = "light",
-    disturbance: Any = "mild",
+    load: str | float = "light",
+    disturbance: Disturbance | Callable[[float], Disturbance] = "mild",
     uav: UAV = LIGHT_QUADROTOR,
     reading: str = "table",
     mean_offset: npt.ArrayLike = (0.0, 0.0, 0.0),
     penalty: float = PENALTY,
     force_weight: float = 1.0,
     load_weight: float = 1.0,
-    shape: str = "ball",
+    zone: str = "ball",
     interval: float = 1.0,
     min_height: float = 0.0,
     max_height: float = np.inf,
@@ -85,13 +79,13 @@ def repare(
     city : City
     start, goal : (3,) arrays
         Positions [m].
-    load : {"dead", "light", "moderate", "heavy"}
-        Class of the payload (REPARE Table 3).
-    disturbance : str, (2,) or (3,) array, or callable
-        A class ("none", "mild", "moderate", "heavy"); or the mean wind, where the air moves to [m/s]; or a function of
-        the time in flight [s] that returns one of these.
+    load : {"dead", "light", "moderate", "heavy"} or float
+        Class of the payload (REPARE Table 3), or the payload [kg].
+    disturbance : {"none", "mild", "moderate", "heavy"}, Wind, Weather, or callable
+        A class; or what the air does, of which the direction of its mean counts; or a function of the time in flight
+        [s] that returns one of these.
     uav : UAV
-        Its payload is replaced by the class of load.
+        Its payload is replaced by the load.
     reading : {"table", "physical"}
         Of D_min, see `uavlab.resilience.safe_distance`.
     mean_offset : (2,) or (3,) array
@@ -101,8 +95,8 @@ def repare(
         ω₀, at least 0.
     force_weight, load_weight : float
         θ_F and θ_G of Eq. 16, at least 0.
-    shape : {"ball", "ring"}
-        Of the zone, see `penalty_zone`.
+    zone : {"ball", "ring"}
+        See `penalty_zone`.
     interval : float
         How often the disturbance is looked at in flight [s], above 0; at the next waypoint after it.
     min_height, max_height : float
@@ -126,6 +120,7 @@ def repare(
         If a class is unknown, D_min reaches over start or goal, the disturbance is not finite, or another argument is
         out of its range.
     """
+    began = time.perf_counter()
     checks.positive_number("interval", interval)
     checks.flag("as_printed", as_printed)
 
@@ -137,7 +132,8 @@ def repare(
     airspace = Airspace(city, 0.0, min_height, max_height, radius=uav.diameter / 2)
     ends = endpoints(airspace, start, goal)
     if now.grounded:
-        return Route(np.empty((0, 3)), "REPARE", reached=False, reason=f"grounded: {now.grounded}", cost=np.inf)
+        info = {"expanded": 0, "plans": [], "safe_distance": now.safe_distance}
+        return timed(Route.none("REPARE", f"grounded: {now.grounded}", **info), began)
     widening = (0.0, 0.0, 0.0) if as_printed else checks.three("mean_offset", mean_offset)
     for name, point, node in (("start", start, ends.source), ("goal", goal, ends.target)):
         refuse_swallowed(city, name, point, node, now.safe_distance, widening)
@@ -145,12 +141,15 @@ def repare(
     def plan(here: npt.ArrayLike, given: Conditions) -> Route:
         source = int(city.code_of(city.cell_of(here)))
         if as_printed:
-            zone = penalty_zone(city, given.safe_distance, penalty=penalty, shape="ring")
+            ring = penalty_zone(city, given.safe_distance, penalty=penalty, zone="ring")
             return cheapest_route(
-                city, source, ends.target, airspace.blocked, *checked_price(city, zone),
+                city, source, ends.target, airspace.blocked, *checked_price(city, ring),
                 heuristic="euclidean", as_printed=True, record=record,
             )  # fmt: skip
-        price = repare_price(city, given, widening, (penalty, force_weight, load_weight), shape)
+        price = repare_price(
+            city, given, mean_offset=widening, penalty=penalty, force_weight=force_weight, load_weight=load_weight,
+            zone=zone,
+        )  # fmt: skip
         return cheapest_route(city, source, ends.target, airspace.blocked, price, cheapest=1.0, record=record)
 
     route = plan(city.center_of(city.index_of(ends.source)), now)
@@ -159,7 +158,7 @@ def repare(
     else:
         place = tuple(route.points[:1].ravel().tolist())
         route = as_repare(route, route.points, [Plan(0.0, place, now.name, now.safe_distance)])
-    return ends.added_to(route, priced="REPARE's zone")
+    return timed(ends.added_to(route, priced="REPARE's zone"), began)
 
 
 def replanned(
@@ -178,7 +177,7 @@ def replanned(
     goal = route.points[-1]
     plans = [Plan(0.0, tuple(route.points[0].tolist()), now.name, now.safe_distance)]
     flown, clock = [route.points[0]], 0.0
-    expanded, elapsed = route.info["expanded"], route.info["elapsed"]
+    expanded = route.info["expanded"]
     while (flown[-1] != goal).any():
         ahead = int(np.searchsorted(route.distance[1:-1], speed * interval - 1e-9)) + 1
         flown.extend(route.points[1 : ahead + 1])
@@ -194,8 +193,7 @@ def replanned(
             return replace(as_repare(route, flown, plans), reached=False, reason=reason, cost=np.inf)
         route = plan(flown[-1], now)
         expanded += route.info["expanded"]
-        elapsed += route.info["elapsed"]
-    return as_repare(replace(route, info=route.info | {"expanded": expanded, "elapsed": elapsed}), flown, plans)
+    return as_repare(replace(route, info=route.info | {"expanded": expanded}), flown, plans)
 
 
 def refuse_swallowed(
@@ -238,9 +236,12 @@ def as_repare(route: Route, points: npt.ArrayLike, plans: list[Plan]) -> Route:
     return replace(route, points=np.asarray(points), planner="REPARE", info=info)
 
 
+Disturbance = str | Wind | Weather
+
+
 def flight_conditions(
-    load: str,
-    disturbance: str | npt.ArrayLike,
+    load: str | float,
+    disturbance: Disturbance,
     uav: UAV = LIGHT_QUADROTOR,
     *,
     reading: str = "table",
@@ -251,8 +252,7 @@ def flight_conditions(
     Parameters
     ----------
     load, disturbance, uav, reading
-        As for `repare`; the disturbance is a class or a mean wind. Wind beyond the heaviest class needs more room than
-        it, by the physical reading.
+        As for `repare`, but no function.
     clock : float
         Time in flight [s], for messages.
 
@@ -263,37 +263,39 @@ def flight_conditions(
     Raises
     ------
     ValueError
-        If a class is unknown, or the wind is not two or three finite numbers.
+        If a class is unknown, the load can't be lifted, or the disturbance is no class, Wind or Weather.
     """
-    loaded = uav.loaded(LOADS[checks.one_of("load", load, LOADS)])
-    argument = f"disturbance after {clock:.1f} s" if clock else "disturbance"
+    loaded = uav.loaded(payload_of(load))
+    kind, speed = kind_and_speed(disturbance, f"disturbance after {clock:.1f} s" if clock else "disturbance")
+    load_name = load if isinstance(load, str) else load_class(load)
+    carried = f"{load} load" if isinstance(load, str) else f"load of {load:g} kg"
     wind = None
     if isinstance(disturbance, str):
-        kind, speed = checks.one_of(argument, disturbance, DISTURBANCES), DISTURBANCES[disturbance]
-        name = f"{load} load, {kind} disturbance"
+        name, grounded = f"{carried}, {kind} disturbance", grounded_by(loaded, Weather(forecast_wind=speed))
     else:
-        wind = checks.three(f"{argument}, if no class, [m/s]", disturbance)
-        speed = float(np.linalg.norm(wind))
-        kind = disturbance_class(speed)
-        name = f"{load} load, wind {speed:.1f} m/s ({kind} disturbance)"
+        name, wind = f"{carried}, wind {speed:.1f} m/s ({kind} disturbance)", wind_of(disturbance).mean
+        if isinstance(disturbance, Weather):
+            grounded = grounded_by(loaded, disturbance)
+        else:
+            grounded = why_grounded(loaded, disturbance)
+    if resilience_level(load_name, kind) == "grounded":
+        grounded = (f"{load_name} load in {kind} disturbance (REPARE Table 3)",)
     force, reserve = gust_force(loaded, speed), float(loaded.horizontal_reserve())
-    grounded = ""
-    if resilience_level(load, kind) == "grounded":
-        grounded = f"{load} load in {kind} disturbance (REPARE Table 3)"
-    else:
-        grounded = "; ".join(grounded_by(loaded, Weather(forecast_wind=speed)))
-    distance = safe_distance(load, kind, reading=reading, uav=uav)
-    if speed > DISTURBANCES[kind]:
-        distance = max(distance, physical_distance(loaded, speed))
-    return Conditions(name, grounded, distance, wind, force / reserve, loaded.weight / loaded.thrust)
+    return Conditions(
+        name, "; ".join(grounded), safe_distance(load, disturbance, reading=reading, uav=uav), wind, force / reserve,
+        loaded.weight / loaded.thrust,
+    )  # fmt: skip
 
 
 def repare_price(
     city: City,
-    for_conditions: Conditions,
+    conditions: Conditions,
+    *,
     mean_offset: npt.ArrayLike = (0.0, 0.0, 0.0),
-    weights: tuple[float, float, float] = (PENALTY, 1.0, 1.0),
-    shape: str = "ball",
+    penalty: float = PENALTY,
+    force_weight: float = 1.0,
+    load_weight: float = 1.0,
+    zone: str = "ball",
 ) -> np.ndarray:
     """Price of a metre, 1 + ω(x)·O_risk(x), kept for the next query in the same conditions.
 
@@ -305,14 +307,14 @@ def repare_price(
     Parameters
     ----------
     city : City
-    for_conditions : Conditions
+    conditions : Conditions
         D_min, the push of the gusts and the load ratio λ. Where the wind's direction is unknown the push counts as
         if it went towards the wall.
     mean_offset : (2,) or (3,) array
         μ [m].
-    weights : (ω₀, θ_F, θ_G)
-        At least 0.
-    shape : {"ball", "ring"}
+    penalty, force_weight, load_weight : float
+        ω₀, θ_F and θ_G, at least 0.
+    zone : {"ball", "ring"}
 
     Returns
     -------
@@ -324,11 +326,9 @@ def repare_price(
     ValueError
         If a weight is negative or not finite, or another argument is not as above.
     """
-    for name, weight in zip(("penalty", "force_weight", "load_weight"), weights, strict=True):
-        checks.not_negative_number(name, weight)
-    penalty, force_weight, load_weight = (float(weight) for weight in weights)
-    offset = checks.three("mean_offset", mean_offset)
-    return cached_price(city, for_conditions, offset, (penalty, force_weight, load_weight), shape)
+    named = {"penalty": penalty, "force_weight": force_weight, "load_weight": load_weight}
+    weights = tuple(checks.not_negative_number(name, weight) for name, weight in named.items())
+    return cached_price(city, conditions, checks.three("mean_offset", mean_offset), weights, zone)
 
 
 @kept_for_city(4)
@@ -336,8 +336,8 @@ def cached_price(
     city: City,
     now: Conditions,
     mean_offset: tuple[float, ...],
-    weights: tuple[float, float, float],
-    shape: str,
+    weights: tuple[float, ...],
+    zone: str,
 ) -> np.ndarray:
     penalty, force_weight, load_weight = weights
     along = city.clearance_along(mean_offset, at_most=now.safe_distance)
@@ -349,4 +349,4 @@ def cached_price(
     if now.wind is not None:
         blown = now.push * city.towards_wall(now.wind) / max(float(np.linalg.norm(now.wind)), 1e-9)
     omega = penalty * (1 + pushed + force_weight * blown + load_weight * now.load_ratio)
-    return locked(penalty_zone(city, reach, penalty=omega, shape=shape))
+    return locked(penalty_zone(city, reach, penalty=omega, zone=zone))

@@ -20,8 +20,8 @@ from uavlab.planners.question import Airspace, Ends, endpoints
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 
-MAX_TURN = MAX_PITCH = np.pi / 3
-"""Greatest change of heading at a waypoint and greatest climb or descent of a leg [rad] (RISK-ACO 3.2 and 4)."""
+MAX_TURN = np.pi / 3
+"""Greatest change of heading at a waypoint [rad] (RISK-ACO 3.2 and 4), as large as `MAX_PITCH`."""
 
 HEADINGS = 8
 NO_HEADING = HEADINGS  # before the first leg that isn't vertical
@@ -65,7 +65,7 @@ class Weights(NamedTuple):
         weights = [checks.not_negative_number(name, weight) for name, weight in named.items()]
         if not any(weights):
             raise ValueError(f"{', '.join(named)} are all 0: give at least one of them a weight above 0")
-        return cls(*weights, checks.flag("drift", drift))
+        return cls(weights[0], weights[1], weights[2], checks.flag("drift", drift))
 
     @property
     def priced(self) -> str:

@@ -20,8 +20,8 @@ from uavlab.optimizers import Result, bas, pso, pso_bas
 from uavlab.optimizers.particle_swarm import SWARM
 from uavlab.planners.ant_colony import ANTS, ant_colony
 from uavlab.planners.curves import PER_SEGMENT, Measure, Task, breaches, costs_of, task_of
+from uavlab.planners.question import timed
 from uavlab.planners.risk_question import (
-    MAX_PITCH,
     MAX_TURN,
     RISK_AHEAD,
     Weights,
@@ -33,6 +33,7 @@ from uavlab.planners.risk_question import (
 )
 from uavlab.risk import RiskMap
 from uavlab.route import Route, promises_of
+from uavlab.spline.limits import MAX_PITCH
 
 OPTIMIZERS: dict[str, tuple[Callable[..., Result], dict[str, Any]]] = {
     "pso_bas": (pso_bas, {"probes": 5, "decay": 0.98}),
@@ -191,6 +192,7 @@ def waypoint_swarm(
         route = replace(walked, planner=route.planner, info={"control": walked.points})
     info = {
         **route.info,
+        "expanded": measure.made,
         "evaluations": measure.made,
         "refined": last,
         "history": measure.history,
@@ -199,7 +201,7 @@ def waypoint_swarm(
     }
     if not route.reached:
         reason = f"the best of {measure.made} curves from {checks.show(start)} to {checks.show(goal)} {route.reason}"
-        return replace(route, points=np.empty((0, 3)), reason=reason, info=info)
+        return Route.none(route.planner, reason, **info)
     return replace(route, info=info)
 
 
@@ -273,11 +275,11 @@ def refine(
     better = route_of(measure, risk_map, f"{route.planner} + refined")
     cost = cost_of(task, route, risk_map)
     history = np.minimum(measure.history, cost)
-    info = {"evaluations": budget, "refined": budget, "history": history, "elapsed": time.perf_counter() - began}
+    info = {"expanded": budget, "evaluations": budget, "refined": budget, "history": history}
     if better.cost < cost or cost == np.inf:
         route, cost = better, better.cost
     route = replace(route, cost=cost, info={**route.info, **info})
-    return finished(route, ends, price, weights, longest)
+    return timed(finished(route, ends, price, weights, longest), began)
 
 
 def check_refinement(refinement: float) -> None:
@@ -311,7 +313,9 @@ def space_of(task: Task, waypoints: int, encoding: str) -> Encoding:
     ends = np.stack([task.source, task.target])
     size = np.array(task.sky.closed.shape, float) - 1e-9  # within the last voxel
     if encoding == "points":
-        return Encoding(ends, np.zeros((waypoints, 3)), np.eye(3), np.tile(np.stack([0 * size, size], 1), (waypoints, 1)))
+        return Encoding(
+            ends, np.zeros((waypoints, 3)), np.eye(3), np.tile(np.stack([0 * size, size], 1), (waypoints, 1))
+        )
     side = sideways_of(task)
     anchors = task.source + np.linspace(0, 1, waypoints + 2)[1:-1, None] * (task.target - task.source)
     anchors[:, 2] = 0.0

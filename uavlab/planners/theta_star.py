@@ -22,7 +22,7 @@ from uavlab.compiled import compiled
 from uavlab.planners.astar import COST_ROUNDING, no_way
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, steps_of
 from uavlab.planners.heap import code_type, open_list, pop, push, sparse_array
-from uavlab.planners.question import Airspace, checked_price, endpoints
+from uavlab.planners.question import Airspace, checked_price, endpoints, timed
 from uavlab.planners.shortcut import distance, line_price, shortcut
 from uavlab.route import Route
 
@@ -75,12 +75,12 @@ def theta_star(
     ValueError
         If start or goal can't be flown from or to, both lie in one voxel, or an argument is out of its range.
     """
+    began = time.perf_counter()
     checks.at_least_one("weight", weight)
     checks.number("weight", weight)
     airspace = Airspace(city, min_clearance, min_height, max_height)
     ends = endpoints(airspace, start, goal)
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
-    began = time.perf_counter()
     count = city.occupied.size
     code = code_type(count)
     g, parent = sparse_array(np.empty, count, np.float64), sparse_array(np.empty, count, code)
@@ -103,8 +103,8 @@ def theta_star(
     for step in TAUT_STEPS if taut and route.reached else ():
         finer = replace(route, points=around_corners(route.points, step * city.cell))
         route = shortcut(finer, city, price=prices)
-    route = replace(route, planner="Theta*", info={**info, "elapsed": time.perf_counter() - began})
-    return ends.added_to(route, prices, priced="" if price is None else "price")
+    route = replace(route, planner="Theta*")
+    return timed(ends.added_to(route, prices, priced="" if price is None else "price"), began)
 
 
 def around_corners(points: np.ndarray, step: float) -> np.ndarray:

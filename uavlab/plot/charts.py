@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import cycle
 
 import matplotlib.pyplot as plt
@@ -19,9 +19,11 @@ from uavlab.plot.style import (
     CONVERGENCE_STYLES,
     DPI,
     ROUTE_COLORS,
-    check_drawn,
+    Drawn,
+    drawn_routes,
     finished,
     label_of,
+    named_routes,
     new_figure,
     plain,
     route_colors,
@@ -29,15 +31,15 @@ from uavlab.plot.style import (
 from uavlab.route import Route
 
 
-def front(routes: Sequence[Route], *marked: Route, label: str = "risk ∫ r ds/dx [1/h]") -> Figure:
+def front(routes: Sequence[Route], *marked: Route | Mapping[str, Route], label: str = "risk ∫ r ds/dx [1/h]") -> Figure:
     """Length against risk (the routes' `cost`): a Pareto front as a line with its points, other routes marked.
 
     Parameters
     ----------
     routes : sequence of Route
         As from `pareto_front`.
-    marked : Route
-        Others to compare, each with its cost in the same unit.
+    marked : Route, or mapping
+        Others to compare, by name if it is a mapping, each with its cost in the same unit.
     label : str
         Of the vertical axis, with a unit.
 
@@ -48,7 +50,8 @@ def front(routes: Sequence[Route], *marked: Route, label: str = "risk ∫ r ds/d
     """
     if not isinstance(routes, Sequence):
         raise ValueError(f"routes must be a list, as from pareto_front, got {type(routes).__name__}")
-    for route in (*routes, *marked):
+    others = [route for one in marked for route in named_routes(one)]
+    for route in routes:
         checks.instance("routes", route, Route)
     if not any(route.reached for route in routes):
         why = f": {routes[0].reason}" if routes else ", it is empty"
@@ -58,7 +61,7 @@ def front(routes: Sequence[Route], *marked: Route, label: str = "risk ∫ r ds/d
               drawstyle="steps-post", linewidth=1)  # fmt: skip
     colors = [color for color in ROUTE_COLORS if color != ROUTE_COLORS[1]]
     styles = cycle(zip(colors, "^sDvP", strict=True))
-    for route, (color, marker) in zip(marked, styles, strict=False):
+    for route, (color, marker) in zip(others, styles, strict=False):
         axes.plot(route.length, route.cost, marker, color=color, markersize=9, label=label_of(route))
     axes.set(xlabel="length [m]", ylabel=label, yscale="log")
     axes.grid(alpha=0.3, which="both")
@@ -135,18 +138,18 @@ def finite_or_nan(values: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(values), values, np.nan)
 
 
-def profile(city: City, *routes: Route, safe_distance: float | None = None) -> Figure:
+def profile(city: City, *routes: Drawn, safe_distance: float | None = None) -> Figure:
     """Height and clearance along routes, with the distance to keep as a dashed line if it is given [m].
 
     On level ground heights are counted from it. Else they are z of the map, and the ground below each route is an
     area: brown, or of several routes in their colours. Dotted lines are the tops of the occupied voxels below.
     """
-    check_drawn(city, routes)
+    planned = drawn_routes(city, routes)
     if safe_distance is not None:
         checks.positive_number("safe_distance", safe_distance)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7.2, 4.6), dpi=DPI, layout="constrained")
     zero = datum_of(city) or 0.0
-    drawn = [(route, color) for route, color in zip(routes, route_colors(len(routes)), strict=True)
+    drawn = [(route, color) for route, color in zip(planned, route_colors(len(planned)), strict=True)
              if len(route.points) > 1]  # fmt: skip
     for route, color in drawn:
         above.plot(route.distance, route.points[:, 2] - zero, color=color, label=label_of(route))

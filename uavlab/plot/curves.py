@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,15 +18,15 @@ from uavlab.plot.ground import draw_cut
 from uavlab.plot.style import (
     DPI,
     ROUTE_COLORS,
-    check_drawn,
+    Drawn,
     draw_map,
+    drawn_routes,
     finished,
     label_of,
     level_of,
     plain,
     route_colors,
 )
-from uavlab.route import Route
 from uavlab.spline import Curve
 from uavlab.spline.curve import BANK, CONTACT
 from uavlab.spline.limits import MAX_PITCH
@@ -33,13 +34,13 @@ from uavlab.vehicle import GRAVITY
 
 
 def curve_profile(
-    *curves: Curve, speed: float, cell: float, bank: float = BANK, max_pitch: float = MAX_PITCH
+    *curves: Curve | Mapping[str, Curve], speed: float, cell: float, bank: float = BANK, max_pitch: float = MAX_PITCH
 ) -> Figure:
     """Curvature and pitch along curves, with the papers' limits and ours (RISK-ACO Figs 9-10, PSO-BAS Figs 7-8).
 
     Parameters
     ----------
-    curves : Curve
+    curves : Curve, or mapping of curves by name
     speed : float
         v [m/s], above 0: a bank holds a level turn up to the curvature g·tan(bank)/v².
     cell : float
@@ -52,11 +53,11 @@ def curve_profile(
     ValueError
         If there is no curve, or a number is not above 0.
     """
-    check_curves(curves)
+    drawn = drawn_curves(curves)
     for name, value in (("speed", speed), ("cell", cell), ("bank", bank), ("max_pitch", max_pitch)):
         checks.positive_number(name, value)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8.4, 5.4), dpi=DPI, layout="constrained")
-    for curve, color in zip(curves, route_colors(len(curves)), strict=True):
+    for curve, color in zip(drawn, route_colors(len(drawn)), strict=True):
         above.plot(curve.distance, finite_or_nan(curve.curvature), color=color, label=plain(curve.planner))
         above.plot(curve.distance, finite_or_nan(curve.level_curvature), ":", color=color, linewidth=1.2)
         below.plot(curve.distance, np.degrees(curve.pitch), color=color)
@@ -81,7 +82,12 @@ def curve_profile(
 
 
 def corner(
-    city: City, *curves: Curve, center: npt.ArrayLike, reach: float, diameter: float, route: Route | None = None
+    city: City,
+    *curves: Curve | Mapping[str, Curve],
+    center: npt.ArrayLike,
+    reach: float,
+    uav_diameter: float,
+    route: Drawn | None = None,
 ) -> Figure:
     """Curves about a point from above, as wide as the body, with their control points; obstacles at its height dark.
 
@@ -90,15 +96,15 @@ def corner(
     Parameters
     ----------
     city : City
-    curves : Curve
+    curves : Curve, or mapping of curves by name
         A panel for each.
     center : (3,) array
         Where to look [m].
     reach : float
         How far to see to each side [m], above 0.
-    diameter : float
+    uav_diameter : float
         Of the body [m], above 0.
-    route : Route, optional
+    route : Route, or mapping with one, optional
         What was smoothed; drawn dashed.
 
     Raises
@@ -106,23 +112,23 @@ def corner(
     ValueError
         If there is no curve, the point's height isn't on the map, or a number is not above 0.
     """
-    check_drawn(city, () if route is None else (route,))
-    check_curves(curves)
+    planned = drawn_routes(city, () if route is None else (route,))
+    drawn = drawn_curves(curves)
     x, y, z = checks.three("center", center)
-    for name, value in (("reach", reach), ("diameter", diameter)):
+    for name, value in (("reach", reach), ("uav_diameter", uav_diameter)):
         checks.positive_number(name, value)
     k = level_of(city, z)
     layer = np.where(city.occupied[:, :, k], 1.0, np.nan)
-    figure, panels = plt.subplots(1, len(curves), figsize=(0.8 + 3.7 * len(curves), 4.4), dpi=DPI, squeeze=False,
+    figure, panels = plt.subplots(1, len(drawn), figsize=(0.8 + 3.7 * len(drawn), 4.4), dpi=DPI, squeeze=False,
                                   sharey=True, layout="constrained")  # fmt: skip
-    for axes, curve in zip(panels[0], curves, strict=True):
+    for axes, curve in zip(panels[0], drawn, strict=True):
         draw_map(axes, city, layer, "Greys", vmin=0.0, vmax=1.6)
         draw_cut(axes, city, k)
-        if route is not None:
-            axes.plot(*route.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2, label=label_of(route))
-        axes.add_collection(PolyCollection(list(swept(curve, diameter)), facecolor=ROUTE_COLORS[1], alpha=0.35))
-        axes.plot(*curve.points[:, :2].T, color=ROUTE_COLORS[1], label=f"curve and its body of {diameter:g} m")
-        touches = np.append(curve.least_distances(city, diameter) < (1 - CONTACT) * diameter / 2, False)
+        for way in planned:
+            axes.plot(*way.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2, label=label_of(way))
+        axes.add_collection(PolyCollection(list(swept(curve, uav_diameter)), facecolor=ROUTE_COLORS[1], alpha=0.35))
+        axes.plot(*curve.points[:, :2].T, color=ROUTE_COLORS[1], label=f"curve and its body of {uav_diameter:g} m")
+        touches = np.append(curve.least_distances(city, uav_diameter) < (1 - CONTACT) * uav_diameter / 2, False)
         axes.plot(*np.where(touches[:, None], curve.points, np.nan)[:, :2].T, color=ROUTE_COLORS[0], linewidth=4,
                   label="touches an obstacle")  # fmt: skip
         axes.plot(*curve.control[:, :2].T, "o", color=ROUTE_COLORS[2], markersize=4, label="control points")
@@ -144,9 +150,13 @@ def swept(curve: Curve, width: float) -> np.ndarray:
     return np.stack([left[:-1], left[1:], right[1:], right[:-1]], axis=1)
 
 
-def check_curves(curves: Sequence[Curve]) -> None:
-    """Refuse what isn't a curve, or none at all."""
-    if not curves:
+def drawn_curves(curves: Sequence[Curve | Mapping[str, Curve]]) -> list[Curve]:
+    """Curves to draw, each with its name as its planner; what isn't one is refused, and none at all."""
+    drawn: list[Curve] = []
+    for one in curves:
+        for name, curve in one.items() if isinstance(one, Mapping) else [(None, one)]:
+            checks.instance("curves", curve, Curve)
+            drawn.append(curve if name is None else replace(curve, planner=str(name)))
+    if not drawn:
         raise ValueError("curves is empty: give at least one, as from smooth(route, city, uav)")
-    for curve in curves:
-        checks.instance("curves", curve, Curve)
+    return drawn

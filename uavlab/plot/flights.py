@@ -24,13 +24,13 @@ from uavlab.plot.style import (
     ROUTE_COLORS,
     SEQUENTIAL,
     add_color_bar,
-    check_drawn,
     draw_map,
+    drawn_routes,
     finished,
     new_figure,
     plain,
 )
-from uavlab.route import Route
+from uavlab.route import Route, Way
 
 TRACK_STEP = 0.2
 """From point to point of a flight's track [s]."""
@@ -39,7 +39,7 @@ TRACK_STEP = 0.2
 def tracks(
     city: City,
     flights: Mapping[str, Sequence[Flight]],
-    routes: Mapping[str, Route] | None = None,
+    routes: Mapping[str, Route | Way] | None = None,
     *,
     area: tuple[float, float, float, float] | None = None,
 ) -> Figure:
@@ -50,7 +50,7 @@ def tracks(
     city : City
     flights : mapping of sequences of Flight
         By name, as that of a planner; an empty one leaves the panel to its route.
-    routes : mapping of Route, optional
+    routes : mapping of Route or Curve, optional
         What was to be flown, for some of the names or for others; drawn dashed, with a square where one that doesn't
         arrive ends.
     area : (west, east, south, north), optional
@@ -61,8 +61,7 @@ def tracks(
     ValueError
         If there is no name, or what stands behind it isn't flights.
     """
-    planned = dict(routes or {})
-    check_drawn(city, tuple(planned.values()))
+    planned = {route.planner: route for route in drawn_routes(city, [routes or {}])}
     named = {name: list(named_flights(flights.get(name, ())).values()) for name in (planned | dict(flights))}
     if not named:
         raise ValueError("flights is empty: give at least one name, as in {'A*': [flight]}")

@@ -27,29 +27,29 @@ from uavlab.plot.style import (
     DPI,
     ROUTE_COLORS,
     SEQUENTIAL,
+    Drawn,
     add_color_bar,
-    check_drawn,
     draw_map,
     draw_routes,
+    drawn_routes,
     finished,
     level_of,
     new_figure,
     plain,
 )
 from uavlab.risk import RiskMap
-from uavlab.route import Route
 
 
-def plan(city: City, *routes: Route) -> Figure:
+def plan(city: City, *routes: Drawn) -> Figure:
     """The city from above, darker where it is higher, with routes, heights of the ground and no-fly zones.
 
     Parameters
     ----------
     city : City
-    routes : Route
+    routes : Route or Curve, or mapping
         Those without points are named in the legend.
     """
-    check_drawn(city, routes)
+    planned = drawn_routes(city, routes)
     figure, axes = new_figure(6.4, 5.4)
     tops = np.where(city.occupied, (np.arange(city.shape[2]) + 1) * city.cell, 0).max(axis=2)
     if city.ground is not None:
@@ -59,7 +59,7 @@ def plan(city: City, *routes: Route) -> Figure:
     add_color_bar(figure, axes, image, "top of the buildings above the ground [m]").ax.set_ylim(0, max(tops.max(), 1.0))
     draw_contours(axes, city)
     draw_zones(axes, city)
-    draw_routes(axes, routes)
+    draw_routes(axes, planned)
     axes.set_title(plain(city.name))
     return finished(figure)
 
@@ -71,7 +71,7 @@ def section(
     city: City,
     height: float,
     values: np.ndarray | None = None,
-    *routes: Route,
+    *routes: Drawn,
     label: str = "clearance [m]",
     norm: Normalize | None = None,
 ) -> Figure:
@@ -86,7 +86,7 @@ def section(
         Where to cut, z [m].
     values : (nx, ny, nz) array, optional
         What to colour; the clearance by default.
-    routes : Route
+    routes : Route or Curve, or mapping
         Seen from above.
     label : str
         Of the colour bar, with a unit.
@@ -98,7 +98,7 @@ def section(
     ValueError
         If the height lies outside of the map.
     """
-    check_drawn(city, routes)
+    planned = drawn_routes(city, routes)
     k = level_of(city, height)
     figure, axes = new_figure(6.4, 5.4)
     layer = (city.clearance if values is None else np.asarray(values))[:, :, k]
@@ -107,7 +107,7 @@ def section(
     axes.set_facecolor("black")
     draw_cut(axes, city, k)
     draw_zones(axes, city, height)
-    draw_routes(axes, routes)
+    draw_routes(axes, planned)
     axes.set_title(title_of(city, height, "buildings black"))
     return finished(figure)
 
@@ -116,7 +116,7 @@ def field(
     city: City,
     height: float,
     goal: npt.ArrayLike,
-    *routes: Route,
+    *routes: Drawn,
     area: tuple[float, float, float, float] | None = None,
     spacing: float = 3.0,
     **setting: Any,
@@ -130,7 +130,7 @@ def field(
         Where to cut, z [m].
     goal : (3,) array
         What attracts [m].
-    routes : Route
+    routes : Route or Curve, or mapping
         Seen from above.
     area : (west, east, south, north), optional
         Part of the map to show [m]; by default all of it.
@@ -144,7 +144,7 @@ def field(
     ValueError
         If the height lies outside of the map, or an argument is out of its range.
     """
-    check_drawn(city, routes)
+    planned = drawn_routes(city, routes)
     checks.positive("spacing", spacing)
     k = level_of(city, height)
     west, east, south, north = (*city.bounds[:, 0], *city.bounds[:, 1]) if area is None else area
@@ -170,13 +170,13 @@ def field(
     axes.quiver(*points[..., :2].T, *direction[..., :2].T, pivot="mid", angles="xy", scale_units="xy",
                 scale=1.2 / spacing, width=0.005, edgecolor="white", linewidth=0.5)  # fmt: skip
     draw_zones(axes, city, height)
-    draw_routes(axes, routes)
+    draw_routes(axes, planned)
     axes.set(xlim=(west, east), ylim=(south, north))
     axes.set_title(title_of(city, height, "buildings black"))
     return finished(figure)
 
 
-def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
+def risk(risk_map: RiskMap, height: float, *routes: Drawn) -> Figure:
     """The risk of flying at a height; buildings black, hatched where the UAV would be too low.
 
     Colours are a scale of factors, the same at all heights.
@@ -186,7 +186,7 @@ def risk(risk_map: RiskMap, height: float, *routes: Route) -> Figure:
     risk_map : RiskMap
     height : float
         Where to cut, z [m].
-    routes : Route
+    routes : Route or Curve, or mapping
         Seen from above.
 
     Raises
@@ -224,13 +224,13 @@ def layers(risk_map: RiskMap) -> Figure:
     return finished(figure)
 
 
-def expansions(city: City, *routes: Route) -> Figure:
+def expansions(city: City, *routes: Drawn) -> Figure:
     """Which columns of the map each search expanded, and when: dark first, bright last.
 
     Parameters
     ----------
     city : City
-    routes : Route
+    routes : Route or Curve, or mapping
         Planned with `record=True`.
 
     Raises
@@ -238,13 +238,14 @@ def expansions(city: City, *routes: Route) -> Figure:
     ValueError
         If a route didn't record its order, or none is given.
     """
-    if not routes or any("order" not in route.info for route in routes):
+    searches = drawn_routes(city, routes)
+    if not searches or any("order" not in route.info for route in searches):
         raise ValueError("routes must be planned with record=True, at least one")
     figure, all_axes = plt.subplots(
-        1, len(routes), figsize=(3.4 * len(routes) + 1, 3.7), dpi=DPI, squeeze=False, layout="constrained"
+        1, len(searches), figsize=(3.4 * len(searches) + 1, 3.7), dpi=DPI, squeeze=False, layout="constrained"
     )
     built = built_columns(city)
-    for axes, route in zip(all_axes[0], routes, strict=True):
+    for axes, route in zip(all_axes[0], searches, strict=True):
         order = route.info["order"]
         first = np.full(city.shape[:2], np.inf)
         index = city.index_of(order)

@@ -30,7 +30,7 @@ from uavlab.plot.ground import (
     zones_at,
 )
 from uavlab.plot.maps import RISK_LABEL, ground_risk, risk_norm
-from uavlab.plot.style import CRASH_COLOR, DPI, SEQUENTIAL, check_drawn, finished, label_of, plain, route_colors
+from uavlab.plot.style import CRASH_COLOR, DPI, SEQUENTIAL, Drawn, drawn_routes, finished, label_of, plain, route_colors
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 
@@ -42,7 +42,7 @@ LAND_QUADS = 70
 
 def still(
     city: City,
-    *routes: Route,
+    *routes: Drawn,
     risk: RiskMap | None = None,
     flights: Sequence[Flight] | Mapping[str, Flight] = (),
     elevation_deg: float = 32.0,
@@ -53,7 +53,7 @@ def still(
     Parameters
     ----------
     city : City
-    routes : Route
+    routes : Route or Curve, or mapping
     risk : RiskMap, optional
         Paints the ground with the risk just above it.
     flights : sequence of Flight, or mapping
@@ -61,7 +61,7 @@ def still(
     elevation_deg, azimuth_deg : float
         From where it is seen [degrees]: height above the horizon, direction counted from east.
     """
-    check_drawn(city, routes, risk)
+    planned = drawn_routes(city, routes, risk)
     figure = plt.figure(figsize=(7.2, 5.4), dpi=DPI)
     axes: Any = figure.add_axes((0, 0.04, 1, 0.9), projection="3d", computed_zorder=False)
     low, high = city.bounds
@@ -89,7 +89,7 @@ def still(
         axes.add_collection3d(Line3DCollection(edges.reshape(-1, 2, 3), zorder=8, colors=ZONE_COLOR, linewidths=0.8))
         axes.plot([], [], [], color=ZONE_COLOR, linewidth=6, alpha=0.4, label=plain(zone_label(zones)))
     named = named_flights(flights)
-    ways = [(label_of(route), route, 0.4 if named else 1.0) for route in routes]
+    ways = [(label_of(route), route, 0.4 if named else 1.0) for route in planned]
     ways += [(plain(label_of_flight(name, flight)), Route(track(flight)[1]), 1.0) for name, flight in named.items()]
     for (label, way, thickness), color in zip(ways, route_colors(len(ways)), strict=True):
         axes.plot([], [], [], color=color, linewidth=3 * thickness, label=label)

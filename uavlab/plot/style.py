@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import matplotlib
 import matplotlib.pyplot as plt
@@ -14,7 +15,7 @@ from matplotlib.figure import Figure
 from uavlab import checks
 from uavlab.city import City
 from uavlab.risk import RiskMap
-from uavlab.route import Route
+from uavlab.route import Route, Way, as_route
 
 ROUTE_COLORS = ("#D55E00", "#0072B2", "#000000", "#CC79A7", "#009E73", "#E69F00")
 CONVERGENCE_STYLES = tuple(zip(ROUTE_COLORS, ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2))), strict=True))
@@ -45,13 +46,23 @@ def level_of(city: City, height: float) -> int:
     return k
 
 
-def check_drawn(city: City, routes: Sequence[Route], risk_map: RiskMap | None = None) -> None:
-    """Refuse what can't be drawn: a risk map in the place of the city, a list of routes in that of a route."""
+Drawn = Route | Way | Mapping[str, Route | Way]
+"""What figures and scenes draw: a route or a curve, named by who planned it; or several by name."""
+
+
+def drawn_routes(city: City, routes: Sequence[Drawn], risk_map: RiskMap | None = None) -> tuple[Route, ...]:
+    """Routes to draw, each with its name as its planner; what can't be drawn is refused, such as a list of them."""
     checks.instance("city", city, City)
-    for route in routes:
-        checks.instance("routes", route, Route)
     if risk_map is not None:
         checks.instance("risk", risk_map, RiskMap)
+    return tuple(route for one in routes for route in named_routes(one))
+
+
+def named_routes(drawn: Drawn) -> list[Route]:
+    """A route or several, each with its name as its planner."""
+    if not isinstance(drawn, Mapping):
+        return [as_route(drawn, "routes")]
+    return [replace(as_route(way, f"routes[{name!r}]"), planner=str(name)) for name, way in drawn.items()]
 
 
 def new_figure(width: float, height: float) -> tuple[Figure, Axes]:

@@ -53,12 +53,13 @@ def reference_campus(cell: float = 5.0) -> RiskMap:
     return campus(data["zones"], crowds, cell, "reference campus")
 
 
-def random_campus(seed: int | np.random.Generator, cell: float = 5.0) -> RiskMap:
+def random_campus(rng: np.random.Generator | int, cell: float = 5.0) -> RiskMap:
     """A campus drawn at random in the manner of the reference: the same roads, other blocks, buildings and crowds.
 
     Parameters
     ----------
-    seed : int or numpy.random.Generator
+    rng : numpy.random.Generator or int
+        Or a seed for one, by which the campus is then named.
     cell : float
         Edge of a voxel [m].
 
@@ -67,7 +68,8 @@ def random_campus(seed: int | np.random.Generator, cell: float = 5.0) -> RiskMap
     RiskMap
         30 000 people per km² on average; plan from and to `CAMPUS_FLIGHT`.
     """
-    rng = checks.generator("seed", seed)
+    name = f"random campus {rng}" if isinstance(rng, int | np.integer) else "random campus"
+    rng = checks.generator("rng", rng)
     zones = [zone((0, 150), (0, 150), *KINDS["yard"], "ground")]
     for west in (0.0, *ROADS):
         for south in (0.0, *ROADS):
@@ -78,7 +80,6 @@ def random_campus(seed: int | np.random.Generator, cell: float = 5.0) -> RiskMap
             elif rng.random() < 0.5:
                 x, y = place(west, south, rng)
                 zones.append(zone(x, y, 0.0, rng.uniform(1.2, 1.7), "sport"))
-    name = f"random campus {seed}" if isinstance(seed, int | np.integer) else "random campus"
     return campus(zones, rng.normal(0.0, 0.25, (15, 15)), cell, name)
 
 

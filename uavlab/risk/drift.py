@@ -68,7 +68,7 @@ def falls_of(risk_map: RiskMap) -> Falls:
     for number, row in enumerate(rows):
         steps[:, number, : last[number] + 1] = row
     distance, drop, forward, down = steps
-    area = lethal_area(np.maximum(drop, 0.0), np.abs(forward), np.maximum(down, 1e-9), uav.diameter / 2)
+    area = lethal_area(np.maximum(drop, 0.0), np.abs(forward), np.maximum(down, 1e-9), uav.diameter)
     energy = impact_energy(uav.mass + uav.payload, np.abs(forward), np.abs(down))
     ahead, up, hits, energy = map(frozen, (distance / city.cell, -drop / city.cell, FAILURE_RATE * area, energy))
     layers = risk_map.population_density, risk_map.shelter, vehicle_rate(risk_map.vehicle_share)

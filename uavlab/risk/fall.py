@@ -189,7 +189,7 @@ def lethal_area(
     height: npt.ArrayLike,
     forward_speed: npt.ArrayLike,
     fall_speed: npt.ArrayLike,
-    uav_radius: float = RISK_QUADROTOR.diameter / 2,
+    uav_diameter: float = RISK_QUADROTOR.diameter,
     *,
     person_radius: float = PERSON_RADIUS,
     person_height: float = PERSON_HEIGHT,
@@ -206,8 +206,10 @@ def lethal_area(
         0 instead of growing without bound where V_y → 0.
     forward_speed, fall_speed : float or arrays
         V and V_y on impact [m/s], at least 0.
-    uav_radius, person_radius : float
-        R_uav, r_p [m], at least 0.
+    uav_diameter : float
+        2 R_uav [m], at least 0.
+    person_radius : float
+        r_p [m], at least 0.
     person_height : float
         h_p [m], at least 0.
 
@@ -222,13 +224,13 @@ def lethal_area(
         If an argument is negative or not finite, or a fall from above the ground ends with V_y = 0.
     """
     for name, value in (
-        ("height", height), ("forward_speed", forward_speed), ("fall_speed", fall_speed), ("uav_radius", uav_radius),
-        ("person_radius", person_radius), ("person_height", person_height),
+        ("height", height), ("forward_speed", forward_speed), ("fall_speed", fall_speed),
+        ("uav_diameter", uav_diameter), ("person_radius", person_radius), ("person_height", person_height),
     ):  # fmt: skip
         checks.not_negative(name, value)
     height, forward, down = np.broadcast_arrays(*(np.asarray(v, float) for v in (height, forward_speed, fall_speed)))
     if ((down == 0) & (height > 0) & (forward > 0)).any():
         raise ValueError("fall_speed must be above 0 where height and forward_speed are: it would glide for ever")
     glide = np.minimum(height, person_height) * np.divide(forward, down, out=np.zeros(height.shape), where=down > 0)
-    reach = person_radius + uav_radius
+    reach = person_radius + uav_diameter / 2
     return 2 * reach * glide + np.pi * reach**2

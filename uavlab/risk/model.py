@@ -15,7 +15,7 @@ from uavlab.city.model import locked
 from uavlab.risk.drift import Falls, falls_of, landing_rate
 from uavlab.risk.rates import check_density, person_rate, vehicle_rate
 from uavlab.risk.threat import building_threat
-from uavlab.route import Route
+from uavlab.route import Route, Way, as_route
 from uavlab.vehicle import RISK_QUADROTOR, UAV
 
 SAFE_HEIGHT = 3.0
@@ -120,14 +120,14 @@ class RiskMap:
         """Falls in any direction of flight, for compiled code."""
         return falls_of(self)
 
-    def integral(self, route: Route, *, drift: bool = False) -> float:
+    def integral(self, route: Route | Way, *, drift: bool = False) -> float:
         """∫ r ds / dx, the cost that planners minimise [1/h]: by exact voxel traversal, diagonals at their length.
 
         Divided by the edge dx of a voxel it is on the scale of the papers' sums over cells.
 
         Parameters
         ----------
-        route : Route
+        route : Route or Curve
         drift : bool
             Take the rate where the wreck lands that fails while it flies along the route, see `rate_ahead`.
 
@@ -136,7 +136,7 @@ class RiskMap:
         ValueError
             If the route leaves the map, or there is none.
         """
-        check_route(route)
+        route = found(route)
         if not drift:
             return route.integral(self.city, self.rate) / self.city.cell
         route.voxels(self.city)  # refuses a route that leaves the map
@@ -146,7 +146,7 @@ class RiskMap:
             total += float(landing_rate(self, index, end - start) @ length) if (end != start).any() else 0.0
         return total / self.city.cell
 
-    def cell_sum(self, route: Route) -> float:
+    def cell_sum(self, route: Route | Way) -> float:
         """Σ r over the voxels that the route passes, as printed (RISK-ACO Eq. 3, PSO-BAS Eq. 1) [1/h].
 
         Each voxel counts once, however long the way in it: diagonals come free, and halving the voxels doubles it.
@@ -156,18 +156,18 @@ class RiskMap:
         ValueError
             If the route leaves the map, or there is none.
         """
-        check_route(route)
+        route = found(route)
         city = self.city
         index, length = route.voxels(city)
         passed = np.unique(city.code_of(index[length > 1e-9 * city.cell]))
         return float(self.rate.ravel()[passed].sum())
 
-    def fatalities(self, route: Route, speed: float | None = None) -> float:
+    def fatalities(self, route: Route | Way, speed: float | None = None) -> float:
         """Expected deaths per mission, ∫ r ds / (3600 V).
 
         Parameters
         ----------
-        route : Route
+        route : Route or Curve
         speed : float, optional
             V over ground [m/s], above 0; the UAV's cruise speed by default.
 
@@ -177,7 +177,7 @@ class RiskMap:
             If the speed is not above 0, the route leaves the map, or there is none.
         """
         speed = checks.positive_number("speed", self.uav.cruise_speed if speed is None else speed)
-        check_route(route)
+        route = found(route)
         return route.integral(self.city, self.rate) / (3600 * speed)
 
 
@@ -186,11 +186,12 @@ def high_enough(city: City, safe_height: float) -> np.ndarray:
     return ~city.occupied & (city.height_above_surface >= safe_height - 1e-9)
 
 
-def check_route(route: Route) -> None:
-    """Refuse a route that was not found: it would cost nothing, less than any other."""
-    checks.instance("route", route, Route)
+def found(way: Route | Way) -> Route:
+    """A route, unless it was not found: it would cost nothing, less than any other."""
+    route = as_route(way)
     if not (route.reached or len(route.points)):
         raise ValueError(f"route must be one that was found (route.reached), got none: {route.reason}")
+    return route
 
 
 def checked_layer(city: City, name: str, values: npt.ArrayLike) -> np.ndarray:

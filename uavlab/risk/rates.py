@@ -140,7 +140,7 @@ def person_rate(
     else:
         down = fall_speed(height, uav, air_density=air_density, as_printed=as_printed)
         forward = np.asarray(speed, dtype=float)
-    people = np.asarray(population_density, dtype=float) * lethal_area(height, forward, down, uav.diameter / 2)
+    people = np.asarray(population_density, dtype=float) * lethal_area(height, forward, down, uav.diameter)
     return FAILURE_RATE * people * impact_fatality(impact_energy(uav.mass + uav.payload, forward, down), shelter)
 
 

@@ -124,8 +124,8 @@ class Feasibility:
 
 def feasibility(
     curve: Curve,
-    uav: UAV,
     city: City,
+    uav: UAV,
     *,
     speed: float | None = None,
     wind: npt.ArrayLike = (0.0, 0.0, 0.0),
@@ -146,8 +146,8 @@ def feasibility(
     Parameters
     ----------
     curve : Curve
-    uav : UAV
     city : City
+    uav : UAV
     speed : float, optional
         v [m/s], above 0; by default the UAV's cruise speed.
     wind : (2,) or (3,) array

@@ -21,12 +21,14 @@ from uavlab.weather.forces import (
 from uavlab.weather.own_record import WeatherRecord, mean_wind, read_weather
 from uavlab.weather.records import greensboro_weather
 from uavlab.weather.turbulence import DrydenParameters, dryden_gusts, dryden_parameters, dryden_spectrum
+from uavlab.weather.wind import Wind, gust_spectrum
 
 __all__ = [
     "DrydenParameters",
     "ReferenceWind",
     "Weather",
     "WeatherRecord",
+    "Wind",
     "air_density",
     "air_speed_held",
     "course_wind_limit",
@@ -36,6 +38,7 @@ __all__ = [
     "greensboro_weather",
     "ground_speed_held",
     "grounded_by",
+    "gust_spectrum",
     "lift_margin",
     "mean_wind",
     "mean_wind_limit",

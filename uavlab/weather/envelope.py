@@ -14,6 +14,9 @@ from uavlab import checks
 from uavlab.vehicle import UAV
 from uavlab.weather.forces import GUST_FACTOR, SAFETY_FACTOR, STANDARD_AIR, Weather, lift_margin, rain_force
 
+CREEP = 0.1
+"""Who is slower than this over ground gets nowhere [m/s]."""
+
 CRUISE = 0.8
 """Share of the thrust left over sideways that steady drag may take on a planned flight."""
 

@@ -1,0 +1,115 @@
+"""Moving air as flights and planners have it: a mean, gusts around it, and rain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from uavlab import checks
+from uavlab.vehicle import UAV
+from uavlab.weather.envelope import CREEP, limits_broken
+from uavlab.weather.forces import STANDARD_AIR, Weather, rain_force
+from uavlab.weather.turbulence import dryden_parameters, dryden_spectrum
+
+GUSTS = ("none", "gaussian", "ou", "dryden")
+"""In the order of the kinds in `uavlab.flight.motion`."""
+
+
+@dataclass(frozen=True)
+class Wind:
+    """Moving air and rain: a mean, and gusts around it.
+
+    Attributes
+    ----------
+    mean : (2,) or (3,)
+        Where the air moves to, east, north and up [m/s].
+    gusts : {"ou", "gaussian", "dryden", "none"}
+        "ou": Ornstein-Uhlenbeck, R(t) = σ² exp(−|t|/τ). "gaussian": drawn anew every τ seconds. "dryden": after
+        MIL-F-8785C at the route's height; it takes its strength from the mean wind, as that at 6 m, and its pace from
+        the air that passes the UAV.
+    deviation : float
+        σ of each level component [m/s], at least 0; vertical gusts have half of it. Not for "dryden".
+    correlation : float
+        τ [s], above 0. Not for "dryden".
+    rain_mm_per_h : float
+        Rain rate [mm/h].
+    air_density : float
+        [kg/m³]
+
+    Raises
+    ------
+    ValueError
+        If an attribute is out of its range, or Dryden gusts have no mean wind to come from.
+    """
+
+    mean: tuple[float, ...] = (0.0, 0.0, 0.0)
+    gusts: str = "ou"
+    deviation: float = 1.0
+    correlation: float = 1.0
+    rain_mm_per_h: float = 0.0
+    air_density: float = STANDARD_AIR
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mean", checks.three("mean", self.mean))
+        checks.one_of("gusts", self.gusts, GUSTS)
+        for name in ("deviation", "rain_mm_per_h"):
+            checks.not_negative_number(name, getattr(self, name))
+        for name in ("correlation", "air_density"):
+            checks.positive_number(name, getattr(self, name))
+        if self.gusts == "dryden" and not any(self.mean[:2]):
+            raise ValueError("mean is calm, and Dryden gusts take their strength from it: give a wind, or other gusts")
+
+    @classmethod
+    def from_weather(cls, weather: Weather, gusts: str = "ou", correlation: float = 1.0) -> Wind:
+        """The wind of a state of the weather; its strongest gust counts as 3σ above the mean."""
+        mean, gust = weather.reference_wind
+        return cls(
+            mean=tuple(mean * weather.wind_direction),
+            gusts=gusts,
+            deviation=(gust - mean) / 3,
+            correlation=correlation,
+            rain_mm_per_h=weather.rain_mm_per_h,
+            air_density=weather.air_density,
+        )
+
+    @property
+    def speed(self) -> float:
+        """Of the mean wind [m/s]."""
+        return float(np.linalg.norm(self.mean))
+
+
+def wind_of(disturbance: Wind | Weather) -> Wind:
+    """A wind, or that of a state of the weather."""
+    if isinstance(disturbance, Weather):
+        return Wind.from_weather(disturbance)
+    checks.instance("disturbance", disturbance, Wind)
+    return disturbance
+
+
+def gust_spectrum(wind: Wind, omega: npt.ArrayLike, air_speed: float, altitude: float = 30.0) -> np.ndarray:
+    """One-sided spectral density of gusts (..., 3) [m²/s² per rad/s]: its integral over ω is their variance."""
+    omega = checks.numbers("omega", omega)
+    if wind.gusts == "none":
+        return np.zeros((*omega.shape, 3))
+    if wind.gusts == "dryden":
+        return dryden_spectrum(omega, air_speed, altitude, wind.speed)
+    turn = omega * wind.correlation
+    shape = 2 / (1 + turn**2) if wind.gusts == "ou" else np.sinc(turn / (2 * np.pi)) ** 2
+    deviations = wind.deviation * np.array([1.0, 1.0, 0.5])
+    return wind.correlation / np.pi * shape[..., None] * deviations**2
+
+
+def gust_deviations(wind: Wind, altitude: float) -> np.ndarray:
+    """σ of gusts along, across and vertical, (3,) [m/s]."""
+    if wind.gusts == "dryden":
+        return dryden_parameters(altitude, wind.speed).deviations
+    return (wind.gusts != "none") * wind.deviation * np.array([1.0, 1.0, 0.5])
+
+
+def why_grounded(uav: UAV, wind: Wind, altitude: float = 30.0) -> tuple[str, ...]:
+    """`grounded_by` in a wind; its strongest gust is 3σ above the mean."""
+    gust = wind.speed + 3 * float(gust_deviations(wind, altitude)[0])
+    rain = float(rain_force(wind.rain_mm_per_h, uav.rain_area))
+    return limits_broken(uav, wind.speed, gust, rain, wind.air_density, CREEP)
