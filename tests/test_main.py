@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 from uavlab import plot
-from uavlab.__main__ import free_memory, main, tell
+from uavlab.__main__ import main
 from uavlab.flight import Flights
 from uavlab.report import Conditions, Trial, trial_table
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Wind
+from uavlab.whole_way import free_memory, tell
 
 pytestmark = pytest.mark.filterwarnings("error:.*city.source tells all:UserWarning")
 

@@ -14,6 +14,8 @@ from uavlab.flight import OffsetProcess, fly
 from uavlab.planners import astar, repare, shortcut
 from uavlab.risk import RiskMap, reference_campus
 from uavlab.route import Route
+from uavlab.scene.animation import FLIGHT_SECONDS, FRAMES_PER_SECOND, LAST_FRAME
+from uavlab.scene.shapes import tube
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Wind
 
@@ -82,7 +84,7 @@ def test_expansion_shows_the_nodes_in_batches_in_their_order(table1, route):
 
 def test_tube_surrounds_the_polyline():
     points = np.array([[0.0, 0, 0], [0, 0, 5], [4, 0, 5]])
-    corners = scene.tube(points, 0.5).reshape(-1, 3)
+    corners = tube(points, 0.5).reshape(-1, 3)
     distance = np.minimum(
         np.linalg.norm(corners - np.clip(corners, points[0], points[1]), axis=1),
         np.linalg.norm(corners - np.clip(corners, points[1], points[2]), axis=1),
@@ -173,14 +175,14 @@ def test_flights_run_by_one_clock_in_proportion_of_time(table1, crash_and_safe):
     longest = max(flight.duration for flight in crash_and_safe.values())
     for number, flight in enumerate(crash_and_safe.values()):
         frames, places = keys_of(commands, f"/meshcat/flight{number}/uav", ".position")
-        shown = frames[:-1] / (scene.FLIGHT_SECONDS * scene.FRAMES_PER_SECOND) * longest
+        shown = frames[:-1] / (FLIGHT_SECONDS * FRAMES_PER_SECOND) * longest
         steps = np.searchsorted(flight.time, shown - 1e-9)
-        frame = longest / (scene.FLIGHT_SECONDS * scene.FRAMES_PER_SECOND)
+        frame = longest / (FLIGHT_SECONDS * FRAMES_PER_SECOND)
         gap = np.linalg.norm(flight.position[np.minimum(steps, len(flight.log) - 1)] - places[:-1], axis=1)
         assert gap.max() < 8.0 * frame + 0.2  # half a frame's rounding at 5 m/s and what gusts add
         assert places[-2] == pytest.approx(flight.position[-1])
         assert places[-1] == places[-2]  # it stays where it ended
-        assert frames[-1] == scene.LAST_FRAME  # all begin again together
+        assert frames[-1] == LAST_FRAME  # all begin again together
         assert np.allclose(vertices_of(commands[f"/meshcat/flight{number}/tube", "set_object"])[0], places[0], atol=1.0)
 
 
@@ -191,9 +193,9 @@ def test_crash_is_a_cross_that_appears_when_and_where_it_happens(table1, crash_a
     assert (beams.min(axis=0) + beams.max(axis=0)) / 2 == pytest.approx(crash.position[-1], abs=0.1)
     frames, visible = keys_of(commands, "/meshcat/flight0/crash", ".visible")
     longest = max(flight.duration for flight in crash_and_safe.values())
-    moment = crash.duration / longest * scene.FLIGHT_SECONDS * scene.FRAMES_PER_SECOND
+    moment = crash.duration / longest * FLIGHT_SECONDS * FRAMES_PER_SECOND
     assert visible == [False, True, True]
-    assert frames.tolist() == [0, pytest.approx(moment, abs=0.51), scene.LAST_FRAME]
+    assert frames.tolist() == [0, pytest.approx(moment, abs=0.51), LAST_FRAME]
     assert not any("flight1/crash" in path for path, _ in commands)
     assert ("/meshcat/flight1/goal", "set_object") in commands
     assert ("/meshcat/flight0/goal", "set_object") not in commands

@@ -27,7 +27,7 @@ from uavlab.planners import (
 from uavlab.resilience import Controller
 from uavlab.risk import RiskMap, ballistic_fall, fall_speed, person_rate, random_campus
 from uavlab.route import Route
-from uavlab.scene import tube
+from uavlab.scene.shapes import tube
 from uavlab.spline import Curve, basis_functions, feasibility
 from uavlab.spline.basis import fitted, subdivided
 from uavlab.vehicle import LIGHT_QUADROTOR, RISK_QUADROTOR, UAV

@@ -30,6 +30,7 @@ from matplotlib.colors import ListedColormap
 from uavlab import plot, scene
 from uavlab.city import City, table1_city
 from uavlab.planners import astar, penalty_zone, shortcut, theta_star
+from uavlab.route import Route
 
 # %% [markdown]
 # ## The graph: 26 neighbours

@@ -26,9 +26,9 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from uavlab.city import City, table1_city
+from uavlab.city.voxels import is_free_line
 from uavlab.planners import astar, penalty_zone, shortcut, theta_star
 from uavlab.planners.grid import LENGTHS, MOVES
-from uavlab.planners.shortcut import line_cost
 
 Voxel = tuple[int, int, int]
 
@@ -229,7 +229,7 @@ def free_line(city: City) -> Callable[[Any, Any], bool]:
     def check(one: Any, other: Any) -> bool:
         start[0], start[1], start[2] = (one[0] - x) / cell, (one[1] - y) / cell, (one[2] - z) / cell
         end[0], end[1], end[2] = (other[0] - x) / cell, (other[1] - y) / cell, (other[2] - z) / cell
-        return line_cost(city.occupied, None, start, end) < np.inf
+        return is_free_line(city.occupied, start, end)
 
     return check
 

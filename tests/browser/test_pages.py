@@ -10,6 +10,7 @@ from pictures import shades_of_hue, share_of_hue
 from uavlab import plot, scene
 from uavlab.city import City, NoFlyZone, table1_city
 from uavlab.planners import astar
+from uavlab.scene.animation import EXPANSION_BATCHES
 
 
 @pytest.fixture
@@ -66,7 +67,7 @@ def test_expansion_appears_in_its_order(page, tmp_path, picture_of):
         viewer.scene.traverseVisible(o => { if (o.isPoints) names.push(Number(o.parent.name.slice(5))) });
         return names.sort((a, b) => a - b); }"""
     counts = []
-    while not counts or counts[-1] < scene.EXPANSION_BATCHES:
+    while not counts or counts[-1] < EXPANSION_BATCHES:
         batches = page.evaluate(shown)
         assert batches == list(range(len(batches)))  # never a later one without all before it
         counts.append(len(batches))

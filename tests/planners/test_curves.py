@@ -360,7 +360,7 @@ def test_the_risk_ahead_of_a_leg_is_that_where_its_wreck_lands(seed):
     for line in random_lines(rng, risk_map.city.shape, 60):
         leg = line[:2]
         index, length = risk_map.city.voxels_along(risk_map.city.origin + leg * risk_map.city.cell)
-        theirs.append(2.0 * landing_rate(risk_map, index, leg[1] - leg[0]) @ length / risk_map.city.cell)
+        theirs.append(2.0 * landing_rate(risk_map.falls, index, leg[1] - leg[0]) @ length / risk_map.city.cell)
         ours.append(costs_of(sky, leg[None])[0][0])
     assert ours == pytest.approx(theirs, rel=1e-9)
 

@@ -38,7 +38,7 @@ def marked(occupied, cell):
 
 def landing(risk_map, index, direction):
     """The column in which the wreck lands, told by its rate."""
-    rate = landing_rate(risk_map, np.array([index]), np.array(direction))
+    rate = landing_rate(risk_map.falls, np.array([index]), np.array(direction))
     (column,) = np.argwhere(np.isclose(risk_map.vehicle_rate, rate, rtol=1e-9, atol=0))
     return tuple(column)
 
@@ -123,7 +123,7 @@ def test_straight_down_it_doesnt_drift_and_hits_the_roof_below():
     people = np.linspace(0.01, 0.09, 9).reshape(3, 3)
     no_shelter = RiskMap(city, people, 0.0)
     index = np.argwhere(~occupied)
-    rate = landing_rate(no_shelter, index, np.array([0, 0, -1]))
+    rate = landing_rate(no_shelter.falls, index, np.array([0, 0, -1]))
     disc = np.pi * 0.45**2
     assert rate == pytest.approx(6.4e-5 * people[index[:, 0], index[:, 1]] * disc, rel=1e-9)
     # the rate straight below differs by its glide alone, which a dive doesn't have
@@ -143,7 +143,7 @@ def test_a_dive_onto_a_roof_is_softer_than_one_past_it():
     occupied = np.zeros((2, 1, 10), bool)
     occupied[0, 0, :8] = True
     sheltered = RiskMap(City(occupied, cell=5.0), 0.03, 0.5)
-    onto, past = landing_rate(sheltered, np.array([(0, 0, 9), (1, 0, 9)]), np.array([0, 0, -1]))
+    onto, past = landing_rate(sheltered.falls, np.array([(0, 0, 9), (1, 0, 9)]), np.array([0, 0, -1]))
     disc = 6.4e-5 * 0.03 * np.pi * 0.45**2
     for rate, height in ((onto, 7.5), (past, 47.5)):
         down = ballistic_fall(height, pitch=-np.pi / 2).fall_speed
@@ -156,14 +156,14 @@ def test_over_even_ground_the_rate_is_that_of_the_ballistic_fall(shelter):
     even = RiskMap(City(np.zeros((60, 1, 30), bool)), 0.02, shelter, 0.1)
     index = np.array([(2, 0, k) for k in (5, 14, 29)])
     expected = person_rate(index[:, 2] + 0.5, 0.02, shelter, ballistic=True) + vehicle_rate(0.1)
-    assert landing_rate(even, index, np.array(EAST)) == pytest.approx(expected, rel=0.02)
+    assert landing_rate(even.falls, index, np.array(EAST)) == pytest.approx(expected, rel=0.02)
 
 
 def test_people_shelter_and_cars_are_those_of_the_place_where_it_lands():
     people, shelter, share = (np.zeros((20, 3)) for _ in range(3))
     people[10, 1], shelter[10, 1], share[10, 1] = 0.03, 0.5, 0.2
     there = RiskMap(City(np.zeros((20, 3, 8), bool), cell=5.0), people, shelter, share)
-    rate = landing_rate(there, np.array([(3, 1, 5), (10, 1, 5), (4, 1, 5)]), np.array(EAST))
+    rate = landing_rate(there.falls, np.array([(3, 1, 5), (10, 1, 5), (4, 1, 5)]), np.array(EAST))
     assert rate[0] == pytest.approx(person_rate(27.5, 0.03, 0.5, ballistic=True) + vehicle_rate(0.2), rel=0.02)
     assert rate[1:].tolist() == [0, 0]
 
@@ -172,7 +172,9 @@ def test_length_of_a_direction_doesnt_matter():
     campus = random_campus(3)
     index = np.argwhere(campus.flyable)[::50]
     direction = np.array([1.0, -1.0, 0.5])
-    assert np.array_equal(landing_rate(campus, index, direction), landing_rate(campus, index, 40 * direction))
+    assert np.array_equal(
+        landing_rate(campus.falls, index, direction), landing_rate(campus.falls, index, 40 * direction)
+    )
 
 
 def test_rate_ahead_has_the_order_of_the_planners_moves():
@@ -181,7 +183,7 @@ def test_rate_ahead_has_the_order_of_the_planners_moves():
     for move, rate in zip(MOVES, flat.rate_ahead, strict=True):
         (column,) = np.argwhere(np.isclose(flat.vehicle_rate, rate[10, 10, 3], rtol=1e-9, atol=0))
         assert np.sign(column - 10).tolist() == move[:2].tolist()
-        assert rate[10, 10, 3] == landing_rate(flat, np.array([(10, 10, 3)]), move)
+        assert rate[10, 10, 3] == landing_rate(flat.falls, np.array([(10, 10, 3)]), move)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -239,7 +241,7 @@ def test_a_payload_makes_the_blow_harder():
     people = RiskMap(City(np.zeros((40, 5, 8), bool), cell=5.0), 0.01, 0.5, uav=RISK_QUADROTOR)
     loaded = replace(people, uav=RISK_QUADROTOR.loaded(0.7))
     index = np.array([(3, 2, 5)])
-    light, heavy = (float(landing_rate(each, index, np.array(EAST))[0]) for each in (people, loaded))
+    light, heavy = (float(landing_rate(each.falls, index, np.array(EAST))[0]) for each in (people, loaded))
     falls = [each.falls for each in (people, loaded)]
     row = falls[0].last.size // 2
     energies = [fall.energy[row, fall.last[row]] for fall in falls]

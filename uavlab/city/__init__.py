@@ -6,10 +6,11 @@ from uavlab.city.geojson import read_geojson
 from uavlab.city.model import City
 from uavlab.city.place import Place
 from uavlab.city.rasters import read_terrain
-from uavlab.city.readers import read_city, read_voxels
+from uavlab.city.readers import read_city
 from uavlab.city.source import Source
 from uavlab.city.table1 import table1_buildings, table1_city
 from uavlab.city.terrain import Terrain
+from uavlab.city.voxel_map import read_voxels
 from uavlab.city.zones import NoFlyZone, read_no_fly
 
 __all__ = [

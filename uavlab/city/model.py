@@ -17,24 +17,22 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city.buildings import Building
-from uavlab.city.place import Place
-from uavlab.city.rasterise import (
-    RULES,
-    bilinear,
-    mark_ground,
-    raise_surface,
-    range_of_ground,
-    rasterise,
-    touches,
+from uavlab.city.extent import (
+    check_heights,
+    check_size,
+    checked_cell,
+    checked_origin,
+    checked_points,
+    extent_of,
+    locked,
 )
+from uavlab.city.place import Place
+from uavlab.city.rasterise import RULES, bilinear, mark_ground, raise_surface, range_of_ground, rasterise, touches
 from uavlab.city.segments import Runs, runs_of, segment_clearances
 from uavlab.city.source import Source
 from uavlab.city.terrain import Terrain, ground_and_top
-from uavlab.city.voxels import distances_to_obstacle, squared_clearance, voxels_on_segment
+from uavlab.city.voxels import TOUCH, distances_to_obstacle, squared_clearance, voxels_on_segment
 from uavlab.city.zones import NoFlyZone, checked_zones
-
-MOST_VOXELS = 500_000_000
-"""More than this is refused: half a gigabyte for the occupancy alone."""
 
 TINY = 1e-300
 """A clearance below this is that of an obstacle."""
@@ -377,6 +375,31 @@ class City:
         distances = segment_clearances(self.runs, self.clearance, self.cell, starts, ends, within)
         return self.cell * distances.reshape(shape)
 
+    def is_free_line(self, start: npt.ArrayLike, end: npt.ArrayLike, min_clearance: float = 0.0) -> np.ndarray:
+        """Whether straight lines are free of obstacles all along, exactly: a line of sight.
+
+        Parameters
+        ----------
+        start, end : (..., 3) arrays
+            [m]
+        min_clearance : float
+            Least distance that the line has to keep to obstacles [m]; with 0 it must not touch one.
+
+        Returns
+        -------
+        (...) bool array
+            False for a line that leaves the map.
+
+        Raises
+        ------
+        ValueError
+            If `start` or `end` haven't shape (..., 3) or are not finite, or `min_clearance` is negative.
+        """
+        keep = checks.not_negative_number("min_clearance", min_clearance)
+        distance = self.segment_distance(start, end, at_most=keep + TOUCH * self.cell)
+        clear = (distance >= keep - TOUCH * self.cell) & (distance > 0.5 * TOUCH * self.cell)
+        return clear & self.inside(start) & self.inside(end)
+
     def blocked(self, min_clearance: float = 0.0, *, min_height: float = 0.0, max_height: float = np.inf) -> np.ndarray:
         """Where a UAV may not be: obstacles and what is near them, no-fly zones, and what is too low or too high.
 
@@ -648,85 +671,3 @@ class City:
         if not voxels:
             return self.cell_of(points), np.zeros(len(points))
         return np.concatenate(voxels), np.concatenate(lengths)
-
-
-def checked_cell(cell: float) -> float:
-    if not (np.isfinite(cell) and cell > 0):
-        raise ValueError(f"cell must be the edge of a voxel in metres, above 0, got {cell!r}")
-    return float(cell)
-
-
-def checked_origin(origin: npt.ArrayLike) -> np.ndarray:
-    corner = checks.frozen(checks.numbers("origin", origin))
-    if corner.shape != (3,) or not np.isfinite(corner).all():
-        raise ValueError(f"origin must be three finite numbers (x, y, z) in metres, got {origin!r}")
-    return corner
-
-
-def locked(array: np.ndarray) -> np.ndarray:
-    """The array, from now on not to be written to."""
-    array.setflags(write=False)
-    return array
-
-
-def checked_points(points: npt.ArrayLike) -> np.ndarray:
-    array = checks.numbers("points", points)
-    if array.shape[-1:] != (3,) or not np.isfinite(array).all():
-        raise ValueError(f"points must be finite and have shape (..., 3), got shape {array.shape}")
-    return array
-
-
-def check_heights(min_height: float, max_height: float) -> None:
-    """Refuse heights above ground that leave nothing in between."""
-    checks.not_negative_number("min_height", min_height)
-    checks.number("max_height", max_height)
-    if not max_height > min_height:
-        raise ValueError(f"max_height must be above min_height ({min_height:g} m), got {max_height!r}")
-
-
-def extent_of(
-    buildings: Sequence[Building],
-    cell: float,
-    origin: npt.ArrayLike | None,
-    size: npt.ArrayLike | None,
-    margin: float,
-    terrain: Terrain | float | None,
-) -> tuple[np.ndarray, tuple[int, int, int]]:
-    """Lowest corner [m] and shape of a map, see `City.from_buildings`."""
-    if size is None or origin is None:
-        if not buildings:
-            raise ValueError(
-                "buildings is empty, so the extent of the map is unknown: give origin and size, "
-                "for example origin=(0, 0, 0), size=(100, 100, 100)"
-            )
-        low = np.min([building.bounds[0] for building in buildings], axis=0)
-        low[2] = min(low[2], 0.0)  # where all buildings float, the ground is below them
-        high = np.max([building.bounds[1] for building in buildings], axis=0)
-        if isinstance(terrain, int | float):
-            low[2], high[2] = min(low[2], terrain), max(high[2], terrain)
-            low[2] = np.floor(low[2] / cell + 1e-9) * cell - cell  # one layer of voxels is solid
-        around = np.array([margin, margin, 0.0])
-        origin = low - around if origin is None else checked_origin(origin)
-        size = high + np.array([margin, margin, margin]) - origin if size is None else size
-    corner, extent = np.array(checked_origin(origin)), np.asarray(size, dtype=float)
-    if extent.shape != (3,) or not (np.isfinite(extent) & (extent > 0)).all():
-        raise ValueError(f"size must be three positive extents (x, y, z) in metres, got {size!r}")
-    nx, ny, nz = np.ceil(extent / cell - 1e-9)
-    check_size((nx, ny, nz), cell)
-    return corner, (int(nx), int(ny), int(nz))
-
-
-def check_size(shape: Sequence[float], cell: float) -> None:
-    """Refuse a map of too many voxels; the cell that would do is rounded up, so that it does."""
-    if np.prod(shape, dtype=float) > MOST_VOXELS:
-        extent = cell * np.array(shape)
-        edge = cell * (np.prod(shape, dtype=float) / MOST_VOXELS) ** (1 / 3)
-        step = 10.0 ** (np.floor(np.log10(edge)) - 2)
-        edge = step * np.ceil(edge / step)
-        while np.prod(np.ceil(extent / edge)) > MOST_VOXELS:  # whole voxels are a little more
-            edge += step
-        raise ValueError(
-            f"cell={cell:g} m gives {shape[0]:.0f} × {shape[1]:.0f} × {shape[2]:.0f} voxels over "
-            f"{extent[0]:.0f} × {extent[1]:.0f} × {extent[2]:.0f} m, more than {MOST_VOXELS:,}: "
-            f"use a cell of at least {edge:.3g} m or a smaller size"
-        )

@@ -11,6 +11,9 @@ import numpy as np
 
 from uavlab.compiled import compiled
 
+TOUCH = 1e-9
+"""What is nearer than this touches [cells]."""
+
 ROUNDING = 1e-12
 """Shares of a segment that differ by less are the same point."""
 
@@ -159,3 +162,37 @@ def distances_to_obstacle(occupied, clearance, cell, points, exact_within):
     for n in range(len(points)):
         distances[n] = distance_to_obstacle(occupied, clearance, cell, points[n], exact_within)
     return distances
+
+
+@compiled
+def is_free_line(blocked, start, end):
+    """Whether a straight line [cells] touches no blocked voxel, not even an edge or a corner, and stays on the map."""
+    if touches_blocked(blocked, start, end, 0.0):
+        return False
+    voxels, leave = voxels_on_segment(start, end)
+    entered = 0.0
+    for m in range(len(voxels)):
+        i, j, k = voxels[m]
+        if not (0 <= i < blocked.shape[0] and 0 <= j < blocked.shape[1] and 0 <= k < blocked.shape[2]):
+            return False
+        if touches_blocked(blocked, start, end, (entered + leave[m]) / 2) or touches_blocked(
+            blocked, start, end, leave[m]
+        ):
+            return False
+        entered = leave[m]
+    return True
+
+
+@compiled
+def touches_blocked(blocked, start, end, share):
+    """Whether the point at a share of a line lies in a blocked voxel or on its surface, edge or corner."""
+    x = start[0] + share * (end[0] - start[0])
+    y = start[1] + share * (end[1] - start[1])
+    z = start[2] + share * (end[2] - start[2])
+    nx, ny, nz = blocked.shape
+    for i in range(max(math.floor(x - TOUCH), 0), min(math.floor(x + TOUCH), nx - 1) + 1):
+        for j in range(max(math.floor(y - TOUCH), 0), min(math.floor(y + TOUCH), ny - 1) + 1):
+            for k in range(max(math.floor(z - TOUCH), 0), min(math.floor(z + TOUCH), nz - 1) + 1):
+                if blocked[i, j, k]:
+                    return True
+    return False

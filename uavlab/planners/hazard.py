@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.extent import locked
 from uavlab.city.kept import kept_for_city
-from uavlab.city.model import locked
 from uavlab.offsets import crossing_rate
 from uavlab.planners.astar import cheapest_route
 from uavlab.planners.question import Airspace, endpoints, timed

@@ -15,10 +15,10 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.voxels import is_free_line
 from uavlab.compiled import compiled
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around
 from uavlab.planners.question import Airspace, endpoints, timed
-from uavlab.planners.shortcut import line_cost
 from uavlab.route import Route
 
 ATTRACTIONS = ("conic", "quadratic")
@@ -325,8 +325,8 @@ def walk_freely(field, start, step, most):
                 return points[: n + 1], TRAPPED
             for axis in range(3):
                 points[n + 1, axis] = min(max(here[axis] + resultant[axis] * (step / size), 0.0), top[axis])
-        if np.isinf(line_cost(field.occupied, None, here / field.cell, points[n + 1] / field.cell)):
+        if not is_free_line(field.occupied, here / field.cell, points[n + 1] / field.cell):
             return points[: n + 1], CRASHED
-        if np.isinf(line_cost(field.closed, None, here / field.cell, points[n + 1] / field.cell)):
+        if not is_free_line(field.closed, here / field.cell, points[n + 1] / field.cell):
             return points[: n + 1], FORBIDDEN
     return points, GAVE_UP

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.city.model import locked
+from uavlab.city.extent import locked
 from uavlab.risk.model import high_enough
 from uavlab.route import PROMISES, Route
 

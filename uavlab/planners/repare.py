@@ -19,8 +19,8 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.extent import locked
 from uavlab.city.kept import kept_for_city
-from uavlab.city.model import locked
 from uavlab.planners.astar import cheapest_route, penalty_zone
 from uavlab.planners.potential_field import repulsion
 from uavlab.planners.question import Airspace, checked_price, endpoints, nearest_allowed, timed

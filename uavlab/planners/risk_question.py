@@ -13,7 +13,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.bounds import rounding_of
-from uavlab.city.model import check_heights
+from uavlab.city.extent import check_heights
 from uavlab.compiled import compiled
 from uavlab.planners.grid import LENGTHS, MOVES
 from uavlab.planners.question import Airspace, Ends, endpoints

@@ -185,46 +185,5 @@ def line_price(price, least_price, start, end, limit):
 
 
 @compiled
-def line_cost(blocked, price, start, end):
-    """Integral of the price along a straight line [cells], its length without one; infinite if it touches a voxel.
-
-    Of blocked ones; for legs of a step or two.
-    """
-    if touches_blocked(blocked, start, end, 0.0):
-        return np.inf
-    voxels, leave = voxels_on_segment(start, end)
-    length = distance(start, end)
-    cost = 0.0
-    entered = 0.0
-    for m in range(len(voxels)):
-        i, j, k = voxels[m]
-        if not (0 <= i < blocked.shape[0] and 0 <= j < blocked.shape[1] and 0 <= k < blocked.shape[2]):
-            return np.inf
-        if touches_blocked(blocked, start, end, (entered + leave[m]) / 2) or touches_blocked(
-            blocked, start, end, leave[m]
-        ):
-            return np.inf
-        if price is not None:
-            cost += (leave[m] - entered) * length * price[i, j, k]
-        entered = leave[m]
-    return cost if price is not None else length
-
-
-@compiled
-def touches_blocked(blocked, start, end, share):
-    """Whether the point at a share of a line lies in a blocked voxel or on its surface, edge or corner."""
-    x = start[0] + share * (end[0] - start[0])
-    y = start[1] + share * (end[1] - start[1])
-    z = start[2] + share * (end[2] - start[2])
-    nx, ny, nz = blocked.shape
-    for i in range(max(math.floor(x - ROUNDING), 0), min(math.floor(x + ROUNDING), nx - 1) + 1):
-        for j in range(max(math.floor(y - ROUNDING), 0), min(math.floor(y + ROUNDING), ny - 1) + 1):
-            for k in range(max(math.floor(z - ROUNDING), 0), min(math.floor(z + ROUNDING), nz - 1) + 1):
-                if blocked[i, j, k]:
-                    return True
-    return False
-
-
-@compiled
 def distance(start, end):
     return math.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2 + (end[2] - start[2]) ** 2)

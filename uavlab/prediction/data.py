@@ -10,7 +10,7 @@ import numpy as np
 
 from uavlab import checks
 from uavlab.prediction.generator import FEATURES, median_offsets, offset_class, simulate_offsets
-from uavlab.prediction.requirements import require
+from uavlab.requirements import require
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
 from uavlab.weather import greensboro_weather
 
@@ -150,7 +150,7 @@ def synthetic_weather(
         rng.uniform(0, 360, count),
         1050 * np.maximum(sun, 0) * clear,
     )
-    return require("pandas").DataFrame(dict(zip(FEATURES, columns, strict=True)))
+    return require("pandas", "prediction").DataFrame(dict(zip(FEATURES, columns, strict=True)))
 
 
 def make_dataset(

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from scipy.special import ndtr
 
 from uavlab import checks
-from uavlab.prediction.requirements import require
+from uavlab.requirements import require
 from uavlab.vehicle import UAV
 from uavlab.weather import Weather, air_density
 
@@ -227,7 +227,7 @@ def feature_table(weather: Any, names: tuple[str, ...] = FEATURES) -> pandas.Dat
 
 def checked_columns(weather: Any, names: tuple[str, ...] = FEATURES) -> pandas.DataFrame:
     """The named columns in this order; a ValueError lists those that are missing, and what there is instead."""
-    pandas = require("pandas")
+    pandas = require("pandas", "prediction")
     if isinstance(weather, Weather):
         weather = {
             "temperature_c": [weather.temperature_c],

@@ -17,7 +17,7 @@ from scipy.special import stdtrit
 from uavlab import checks
 from uavlab.prediction.data import Dataset, Setting, make_dataset
 from uavlab.prediction.generator import bayes_accuracy, class_probabilities, offset_class
-from uavlab.prediction.requirements import require
+from uavlab.requirements import require
 from uavlab.sweep import sweep
 
 if TYPE_CHECKING:
@@ -35,19 +35,19 @@ FOLDS = 4
 
 def ridge(data: Dataset) -> np.ndarray:
     """A plane through the class numbers, as in REPARE: not rounded, so that its R² is that of the plane."""
-    model = require("sklearn.linear_model").Ridge()
+    model = require("sklearn.linear_model", "prediction").Ridge()
     return model.fit(data.features[data.train], data.classes[data.train]).predict(data.features[data.test])
 
 
 def gaussian_nb(data: Dataset) -> np.ndarray:
     """Gaussian naive Bayes, as in REPARE: within a class the features are normal and independent."""
-    model = require("sklearn.naive_bayes").GaussianNB()
+    model = require("sklearn.naive_bayes", "prediction").GaussianNB()
     return model.fit(data.features[data.train], data.classes[data.train]).predict(data.features[data.test])
 
 
 def xgb_classifier(data: Dataset) -> np.ndarray:
     """XGBoost's classifier with its defaults, as in REPARE: classes without an order."""
-    model = require("xgboost").XGBClassifier(**FIXED)
+    model = require("xgboost", "prediction").XGBClassifier(**FIXED)
     known, labels = np.unique(data.classes[data.train], return_inverse=True)
     return known[model.fit(data.features[data.train], labels).predict(data.features[data.test])]
 
@@ -56,7 +56,7 @@ def ordinal(data: Dataset) -> np.ndarray:
     """One classifier for each boundary, P(class > k): it uses the order; the most probable class wins."""
     above = []
     for k in range(1, data.class_count):
-        model = require("xgboost").XGBClassifier(**TREES, **FIXED)
+        model = require("xgboost", "prediction").XGBClassifier(**TREES, **FIXED)
         label = (data.classes[data.train] > k).astype(int)
         if label.min() == label.max():  # no or every sample lies above: nothing to learn
             above.append(np.full(data.test.sum(), float(label[0])))
@@ -83,7 +83,9 @@ def quantile_class(data: Dataset, quantile: float = 0.95) -> np.ndarray:
 
 def quantile_regression(data: Dataset, quantile: float = 0.95) -> np.ndarray:
     """The same class by XGBoost's quantile regression: no shape of the scatter assumed, and none measured."""
-    model = require("xgboost").XGBRegressor(objective="reg:quantileerror", quantile_alpha=quantile, **TREES, **FIXED)
+    model = require("xgboost", "prediction").XGBRegressor(
+        objective="reg:quantileerror", quantile_alpha=quantile, **TREES, **FIXED
+    )
     model.fit(data.features[data.train], np.log(data.offsets[data.train]))
     return offset_class(np.exp(model.predict(data.features[data.test]).astype(float)), data.class_count)
 
@@ -115,8 +117,8 @@ def fit_log_offset(features: pandas.DataFrame, offsets: npt.ArrayLike) -> tuple[
     xgboost.XGBRegressor, (N,) array
         The residuals ln ξ − prediction are from cross-validation in 4 parts, so a little larger than the noise.
     """
-    selection = require("sklearn.model_selection")
-    model = require("xgboost").XGBRegressor(**TREES, **FIXED)
+    selection = require("sklearn.model_selection", "prediction")
+    model = require("xgboost", "prediction").XGBRegressor(**TREES, **FIXED)
     target = np.log(np.asarray(offsets, dtype=float))
     parts = selection.KFold(FOLDS, shuffle=True, random_state=0)
     residuals = target - selection.cross_val_predict(model, features, target, cv=parts)
@@ -155,7 +157,7 @@ def score(data: Dataset, predicted: npt.ArrayLike) -> dict[str, float]:
     expected = class_probabilities(*known)[np.arange(len(true)), classes - 1].mean()
     return {
         "accuracy": float((classes == true).mean()),
-        "r2": float(require("sklearn.metrics").r2_score(true, predicted)),
+        "r2": float(require("sklearn.metrics", "prediction").r2_score(true, predicted)),
         "under_prediction": float((classes < true).mean()),
         "excess": float(np.maximum(classes - true, 0).mean()),
         "bayes_gap": bayes_accuracy(*known) - float(expected),
@@ -197,7 +199,7 @@ def compare_models(
     ValueError
         If there are fewer than 2 seeds or one is repeated, or the setting is unknown.
     """
-    pandas = require("pandas")
+    pandas = require("pandas", "prediction")
     seeds = list(seeds)
     if len(seeds) < 2 or len(set(seeds)) < len(seeds):  # the same data twice would narrow the interval
         raise ValueError(f"seeds must be at least 2 and all different, got {seeds}")

@@ -28,7 +28,7 @@ from uavlab.prediction.generator import (
     offset_class,
 )
 from uavlab.prediction.models import fit_log_offset
-from uavlab.prediction.requirements import require
+from uavlab.requirements import require
 
 ATTRIBUTE = "uavlab_offset_predictor"
 """Under which the file keeps what XGBoost doesn't know."""
@@ -212,7 +212,7 @@ class OffsetPredictor:
                     f"on ({outside.sum()} of {len(table)} rows): trees don't extrapolate",
                     stacklevel=3,
                 )
-        return training.booster.predict(require("xgboost").DMatrix(table)).astype(float)
+        return training.booster.predict(require("xgboost", "prediction").DMatrix(table)).astype(float)
 
     @property
     def fitted(self) -> Training:
@@ -269,7 +269,7 @@ class OffsetPredictor:
         ValueError
             If it isn't such a file, was changed since, or was trained on other features.
         """
-        xgboost = require("xgboost")
+        xgboost = require("xgboost", "prediction")
         content = Path(path).read_bytes()
         booster = xgboost.Booster()
         try:  # as plain JSON first: XGBoost ends the process on an empty file, and on some that were changed

@@ -7,18 +7,17 @@ was counted. Here the ballistic fall is followed voxel by voxel until it meets t
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from uavlab.checks import frozen
+from uavlab.city import City
 from uavlab.compiled import compiled
 from uavlab.risk.fall import AIR_DENSITY, fall_motion, impact_energy, lethal_area
 from uavlab.risk.rates import EVEN_ODDS_ENERGY, FAILURE_RATE, LEAST_FATAL_ENERGY, vehicle_rate
-
-if TYPE_CHECKING:
-    from uavlab.risk.model import RiskMap
+from uavlab.vehicle import UAV
 
 STEPS_PER_CELL = 4
 """How finely a fall is followed."""
@@ -47,9 +46,10 @@ class Falls(NamedTuple):
     cars: np.ndarray  # (nx, ny) deaths in cars [1/h]
 
 
-def falls_of(risk_map: RiskMap) -> Falls:
-    """All falls on a map, from as high as the map is."""
-    city, uav = risk_map.city, risk_map.uav
+def falls_of(
+    city: City, uav: UAV, population_density: np.ndarray, shelter: np.ndarray, vehicle_share: np.ndarray
+) -> Falls:
+    """All falls of a UAV on a map with these layers (nx, ny), from as high as the map is."""
     pitch = np.radians(np.arange(-90.0, 90.0 + PITCH_STEP / 2, PITCH_STEP))
     depth = city.cell * city.shape[2]
     motion, enough = fall_motion(uav, uav.cruise_speed, depth, AIR_DENSITY)
@@ -71,9 +71,9 @@ def falls_of(risk_map: RiskMap) -> Falls:
     area = lethal_area(np.maximum(drop, 0.0), np.abs(forward), np.maximum(down, 1e-9), uav.diameter)
     energy = impact_energy(uav.mass + uav.payload, np.abs(forward), np.abs(down))
     ahead, up, hits, energy = map(frozen, (distance / city.cell, -drop / city.cell, FAILURE_RATE * area, energy))
-    layers = risk_map.population_density, risk_map.shelter, vehicle_rate(risk_map.vehicle_share)
-    people, shelter, cars = (frozen(np.ascontiguousarray(layer)) for layer in layers)
-    return Falls(ahead, up, hits, energy, frozen(last, int), city.occupied, people, shelter, cars)
+    layers = population_density, shelter, vehicle_rate(vehicle_share)
+    people, sheltered, cars = (frozen(np.ascontiguousarray(layer)) for layer in layers)
+    return Falls(ahead, up, hits, energy, frozen(last, int), city.occupied, people, sheltered, cars)
 
 
 NOTHING = frozen(np.empty((0, 0)))
@@ -92,9 +92,9 @@ def fall_steps(fall: np.ndarray, depth: float, cell: float) -> np.ndarray:
     return np.array([np.interp(steps, way, values) for values in fall])
 
 
-def landing_rate(risk_map: RiskMap, index: np.ndarray, direction: np.ndarray) -> np.ndarray:
+def landing_rate(falls: Falls, index: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Deaths per hour of flight [1/h] if the UAV flies in a direction (3,) through the centres of voxels (M, 3)."""
-    return landing_rates(risk_map.falls, np.asarray(direction, dtype=float), np.ascontiguousarray(index))
+    return landing_rates(falls, np.asarray(direction, dtype=float), np.ascontiguousarray(index))
 
 
 @compiled

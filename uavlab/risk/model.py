@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.city.model import locked
+from uavlab.city.extent import locked
 from uavlab.risk.drift import Falls, falls_of, landing_rate
 from uavlab.risk.rates import check_density, person_rate, vehicle_rate
 from uavlab.risk.threat import building_threat
@@ -113,12 +113,12 @@ class RiskMap:
         index = np.argwhere(np.ones(self.city.shape, dtype=bool))
         moves = np.argwhere(np.ones((3, 3, 3), dtype=bool)) - 1
         moves = moves[(moves != 0).any(axis=1)]
-        return np.stack([landing_rate(self, index, move).reshape(self.city.shape) for move in moves])
+        return np.stack([landing_rate(self.falls, index, move).reshape(self.city.shape) for move in moves])
 
     @cached_property
     def falls(self) -> Falls:
         """Falls in any direction of flight, for compiled code."""
-        return falls_of(self)
+        return falls_of(self.city, self.uav, self.population_density, self.shelter, self.vehicle_share)
 
     def integral(self, route: Route | Way, *, drift: bool = False) -> float:
         """∫ r ds / dx, the cost that planners minimise [1/h]: by exact voxel traversal, diagonals at their length.
@@ -143,7 +143,7 @@ class RiskMap:
         total = 0.0
         for start, end in pairwise(route.points):
             index, length = self.city.voxels_along(np.array([start, end]))
-            total += float(landing_rate(self, index, end - start) @ length) if (end != start).any() else 0.0
+            total += float(landing_rate(self.falls, index, end - start) @ length) if (end != start).any() else 0.0
         return total / self.city.cell
 
     def cell_sum(self, route: Route | Way) -> float:

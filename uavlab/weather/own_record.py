@@ -171,12 +171,12 @@ class WeatherRecord:
         ValueError
             If the file lacks one of the columns.
         """
-        from uavlab.prediction.requirements import require
+        from uavlab.requirements import require
 
         lacking = [name for name in FEATURES.values() if name not in self.columns]
         if lacking:
             raise ValueError(f"features need {', '.join(lacking)}, which {self.name} doesn't have")
-        frame = require("pandas").DataFrame({name: self.columns[name] for name in FEATURES.values()})
+        frame = require("pandas", "prediction").DataFrame({name: self.columns[name] for name in FEATURES.values()})
         return frame.dropna().rename_axis("row")
 
 
