@@ -4,6 +4,8 @@
 answer that returns a hint, or nothing when the answer is right.
 """
 
+from __future__ import annotations
+
 import importlib
 from dataclasses import dataclass
 from typing import Any

@@ -1,5 +1,7 @@
 """Checks of the exercises on wind and rain: the force of rain, drag as a vector, the heading that holds a course."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from typing import Any

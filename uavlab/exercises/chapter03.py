@@ -1,5 +1,7 @@
 """Checks of the exercises on prediction: predicting too low, the most probable class, figures that must be counts."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from typing import Any

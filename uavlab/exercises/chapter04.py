@@ -1,5 +1,7 @@
 """Checks of the exercises on cities: node codes, the distance to a voxel, the clearance that a street keeps."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -3,6 +3,8 @@
 A mistake is recognised by what it answers; its hint says why that can't be.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from typing import Any

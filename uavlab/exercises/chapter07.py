@@ -4,6 +4,8 @@ A hint says which mistake the answers look like and why it is one. Mistakes are 
 by how they are written.
 """
 
+from __future__ import annotations
+
 import itertools
 import math
 from collections.abc import Callable, Sequence
