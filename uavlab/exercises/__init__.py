@@ -1,7 +1,7 @@
 """Checks of the course's exercises: what is right, or what is wrong and why, without giving the answer away.
 
 `check("06.2", answer)` looks for exercise 2 of chapter 6. Each chapter is a module, each exercise a function of the
-answer that returns a hint, or nothing when the answer is right.
+answer that returns a hint, or nothing when the answer is right. What they share is in `uavlab.exercises.hints`.
 """
 
 from __future__ import annotations
@@ -9,9 +9,6 @@ from __future__ import annotations
 import importlib
 from dataclasses import dataclass
 from typing import Any
-
-NOTHING = "Your function returns nothing: it needs a line with return."
-"""The hint for what most beginners forget."""
 
 
 @dataclass(frozen=True)

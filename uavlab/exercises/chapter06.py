@@ -8,10 +8,14 @@ from __future__ import annotations
 
 import itertools
 import math
+import operator
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
+
+from uavlab.exercises.hints import each_alike, recognised
 
 Move = tuple[int, ...]
 Graph = Mapping[Any, Mapping[Any, float]]
@@ -22,26 +26,29 @@ MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if
 def exercise_1(octile: Callable[[int, int, int], float]) -> str:
     """06.1: the shortest way over 26 moves on an empty map, from the differences of the coordinates."""
     sorted_ahead = [(5, 3, 1), (7, 7, 2), (9, 4, 4), (6, 0, 0), (3, 3, 3), (8, 2, 0), (0, 0, 0)]
-
-    def agrees(formula: Callable[..., float], offsets: Sequence[Move]) -> bool:
-        return all(math.isclose(octile(*o), formula(*o), rel_tol=1e-9, abs_tol=1e-9) for o in offsets)
-
-    if agrees(octile_distance, sorted_ahead):
+    if is_octile(octile, sorted_ahead):
         shuffled = [order for offset in sorted_ahead for order in itertools.permutations(offset)]
-        if not agrees(octile_distance, shuffled):
+        if not is_octile(octile, shuffled):
             return "It is right where |dx| ≥ |dy| ≥ |dz|. The goal may lie anywhere: which of the three is largest?"
         mirrored = [tuple(s * d for s, d in zip(sign, o, strict=True)) for sign in MOVES for o in shuffled if all(sign)]
-        if not agrees(octile_distance, mirrored):
+        if not is_octile(octile, mirrored):
             return (
                 "It is right for goals to the north-east and above. What are dx, dy, dz when the goal lies to the west?"
             )
         return ""
-    for formula, hint in OCTILE_MISTAKES:
-        if agrees(formula, sorted_ahead):
-            return hint
-    return (
+    return recognised(octile, OCTILE_MISTAKES, sorted_ahead, partial(same_at, offsets=sorted_ahead)) or (
         f"For (5, 3, 1) you get {octile(5, 3, 1):.3f}. Which five moves make the shortest way, and how long are they?"
     )
+
+
+def same_at(octile: Callable[..., float], wanted: Sequence[float], offsets: Sequence[Move]) -> bool:
+    """Whether a function gives these distances; it is asked no further than the first that is wrong."""
+    given = itertools.starmap(octile, offsets)
+    return each_alike(given, wanted, partial(math.isclose, rel_tol=1e-9, abs_tol=1e-9))
+
+
+def is_octile(octile: Callable[..., float], offsets: Sequence[Move]) -> bool:
+    return same_at(octile, [octile_distance(*offset) for offset in offsets], offsets)
 
 
 def octile_distance(dx: int, dy: int, dz: int) -> float:
@@ -93,9 +100,8 @@ def exercise_2(legal: Callable[[np.ndarray, Move, Move], bool]) -> str:
     beyond = [case for case in cases if not is_inside(case[0], target_of(*case[1:]))]
     answers = [bool(legal(*case)) for case in within]
     if answers != [box_is_free(*case) for case in within]:
-        for rule, hint in LEGAL_MISTAKES:
-            if answers == [rule(*case) for case in within]:
-                return hint
+        if hint := recognised(answers, LEGAL_MISTAKES, within, operator.eq):
+            return hint
         wrong = next(case for case, answer in zip(within, answers, strict=True) if answer != box_is_free(*case))
         blocked = int(sum(wrong[0][voxel] for voxel in box_of(*wrong[1:])))
         return (
