@@ -44,6 +44,11 @@ def check(number: str, answer: Any) -> Verdict:
     ------
     ValueError
         If there is no such exercise.
+
+    Examples
+    --------
+    >>> check("06.1", lambda dx, dy, dz: dx + dy + dz)
+    06.1: not yet. That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.
     """
     chapter, _, exercise = number.partition(".")
     try:
