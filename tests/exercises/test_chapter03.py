@@ -5,17 +5,11 @@ import math
 import numpy as np
 import pytest
 from scipy.stats import norm
-from solved import solutions_of
 
 from uavlab.exercises import check
 from uavlab.prediction import class_probabilities, compare_models, make_dataset, score
 
 NUMBERS = [("03.1", "under_prediction"), ("03.2", "most_probable_class"), ("03.3", "right_answers")]
-
-
-@pytest.fixture
-def solutions():
-    return solutions_of("03")
 
 
 @pytest.mark.parametrize(("number", "name"), NUMBERS)

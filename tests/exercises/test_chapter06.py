@@ -6,14 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from solved import solutions_of
 
 from uavlab.exercises import check
-
-
-@pytest.fixture
-def solutions():
-    return solutions_of("06")
 
 
 def octile_of_largest_first(dx, dy, dz):

@@ -4,15 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from solved import solutions_of
 
 from uavlab.exercises import check
 from uavlab.resilience import DISTURBANCES, LOADS
-
-
-@pytest.fixture
-def solutions():
-    return solutions_of("08")
 
 
 def price(distance, keep, wind, normal, load, *, blown=None, push=None, scale=2.0, one=1.0, open_air=1.0, zone=True):

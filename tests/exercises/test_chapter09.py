@@ -4,14 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from solved import solutions_of
 
 from uavlab.exercises import check
-
-
-@pytest.fixture
-def solutions():
-    return solutions_of("09")
 
 
 def shared(weights):

@@ -1,15 +1,14 @@
 """Checks of the course's exercises: what is right, or what is wrong and why, without giving the answer away.
 
 `check("06.2", answer)` looks for exercise 2 of chapter 6. Each chapter is a module, each exercise a function of the
-answer that returns a hint, or nothing when the answer is right.
+answer that returns a hint, or nothing when the answer is right. What they share is in `uavlab.exercises.hints`.
 """
+
+from __future__ import annotations
 
 import importlib
 from dataclasses import dataclass
 from typing import Any
-
-NOTHING = "Your function returns nothing: it needs a line with return."
-"""The hint for what most beginners forget."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +44,11 @@ def check(number: str, answer: Any) -> Verdict:
     ------
     ValueError
         If there is no such exercise.
+
+    Examples
+    --------
+    >>> check("06.1", lambda dx, dy, dz: dx + dy + dz)
+    06.1: not yet. That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.
     """
     chapter, _, exercise = number.partition(".")
     try:

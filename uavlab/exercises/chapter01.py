@@ -1,12 +1,15 @@
 """Checks of the exercises on wind and rain: the force of rain, drag as a vector, the heading that holds a course."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from uavlab.exercises import NOTHING
+from uavlab.exercises.hints import NOTHING, alike, recognised
 
 Triple = tuple[float, float, float]
 
@@ -31,19 +34,20 @@ COURSES = [
 TOO_STRONG = [(5.0, (0.0, -9.0), 90.0), (8.0, (-9.0, 1.0), 0.0)]
 """Air speed [m/s], wind (east, north) [m/s], course [degrees]; in the second list no heading holds the course."""
 
+same = partial(alike, absolute=1e-9)
+
 
 def exercise_1(answer: Callable[..., float]) -> str:
     """01.1: the force of rain."""
     given = [answer(*shower) for shower in SHOWERS]
     if any(force is None for force in given):
         return NOTHING
-    right = [rain(*shower) for shower in SHOWERS]
-    if agree(given, right):
+    forces, right = np.asarray(given, dtype=float), [rain(*shower) for shower in SHOWERS]
+    if same(forces, right):
         return ""
-    for mistake, hint in RAIN_MISTAKES:
-        if agree(given, [mistake(*shower) for shower in SHOWERS]):
-            return hint
-    index = next(i for i, (force, true) in enumerate(zip(given, right, strict=True)) if not agree(force, true))
+    if hint := recognised(forces, RAIN_MISTAKES, SHOWERS, same):
+        return hint
+    index = next(i for i, (force, true) in enumerate(zip(forces, right, strict=True)) if not same(force, true))
     rate, area, speed, restitution = SHOWERS[index]
     return (
         f"For {rate:g} mm/h on {area:g} m², drops of {speed:g} m/s and restitution {restitution:g} you get "
@@ -61,13 +65,12 @@ def exercise_2(answer: Callable[..., Any]) -> str:
         return "The answer must have three components: a force has a direction. Which vector points along it?"
     if any(np.shape(force) != (3,) for force in given):
         return f"The answer must have three components, yours has the shape {np.shape(given[0])}."
-    right = [drag(*state) for state in states]
-    if agree(given, right):
+    forces, right = np.asarray(given, dtype=float), [drag(*state) for state in states]
+    if same(forces, right):
         return ""
-    for mistake, hint in DRAG_MISTAKES:
-        if agree(given, [mistake(*state) for state in states]):
-            return hint
-    index = next(i for i, (force, true) in enumerate(zip(given, right, strict=True)) if not agree(force, true))
+    if hint := recognised(forces, DRAG_MISTAKES, states, same):
+        return hint
+    index = next(i for i, (force, true) in enumerate(zip(forces, right, strict=True)) if not same(force, true))
     found = ", ".join(f"{part:.3f}" for part in given[index])
     return (
         f"For the wind {STATES[index][0]} and the velocity {STATES[index][1]} m/s you get ({found}) N. How does the "
@@ -87,9 +90,8 @@ def exercise_3(answer: Callable[..., float | None]) -> str:
             return f"For air speed, wind and course {case} there is a heading, and you return none."
     right = [heading(*case) for case in cases]
     if not same_directions(given, right):
-        for mistake, hint in HEADING_MISTAKES:
-            if same_directions(given, [mistake(*case) for case in cases]):
-                return hint
+        if hint := recognised(given, HEADING_MISTAKES, cases, same_directions):
+            return hint
         return drift_of(*next(pair for pair in zip(COURSES, given, strict=True) if off_course(*pair)))
     try:
         refused = [answer(speed, np.array(wind), course) is None for speed, wind, course in TOO_STRONG]
@@ -101,11 +103,6 @@ def exercise_3(answer: Callable[..., float | None]) -> str:
             f"a crosswind of {abs(TOO_STRONG[0][1][1]):g} m/s: the sine would have to be above 1. Return None there."
         )
     return ""
-
-
-def agree(given: Any, right: Any) -> bool:
-    """Whether numbers are the same but for rounding."""
-    return bool(np.allclose(np.asarray(given, dtype=float), np.asarray(right, dtype=float), rtol=1e-6, atol=1e-9))
 
 
 def same_directions(given: Sequence[float], right: Sequence[float]) -> bool:

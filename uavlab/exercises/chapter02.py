@@ -4,15 +4,22 @@ A hint says which mistake the answers look like and why it is one. Mistakes are 
 by how they are written.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
+from uavlab.exercises.hints import alike, each_alike, recognised
 from uavlab.offsets import coverage, minimum_safe_distance, pauta_filter, pauta_radius
 
 Vector = tuple[float, float]
 RADII = (0.5, 1.0, 2.0, 3.0, 4.0)
+
+same_distances = partial(alike, relative=2e-4)  # the radius may be rounded to 3.439
+same_samples = partial(each_alike, same=np.array_equal)
 
 
 def exercise_1(coverage_in_the_plane: Callable[[float], float]) -> str:
@@ -20,13 +27,10 @@ def exercise_1(coverage_in_the_plane: Callable[[float], float]) -> str:
     answers = [coverage_in_the_plane(k) for k in RADII]
     if any(answer is None for answer in answers):
         return "Your function returns nothing: its answer is a probability."
-    if np.allclose(answers, coverage(RADII, 2), rtol=1e-6):
+    if alike(answers, coverage(RADII, 2)):
         at_zero = coverage_in_the_plane(0.0)
         return "" if math.isclose(at_zero, 0.0, abs_tol=1e-9) else "A circle of radius 0 holds nothing."
-    for formula, hint in PLANE_MISTAKES:
-        if np.allclose(answers, [formula(k) for k in RADII], rtol=1e-6):
-            return hint
-    return (
+    return recognised(answers, PLANE_MISTAKES, [(k,) for k in RADII], alike) or (
         f"For k = 3 you get {float(answers[3]):.4f}. Cut the circle into rings: how large is the ring from r to "
         "r + dr, and how high is the density on it?"
     )
@@ -75,26 +79,26 @@ def exercise_2(safe_distance: Callable[[float, float, Vector, Vector], float]) -
     in_calm = [safe_distance(*case) for case in calm]
     if any(answer is None for answer in in_calm):
         return "Your function returns nothing: its answer is a distance in metres."
-    if not np.allclose(in_calm, [widened(*case) for case in calm], rtol=2e-4):
-        for formula, hint in CALM_MISTAKES:
-            if np.allclose(in_calm, [formula(case[0], case[1]) for case in calm], rtol=2e-4):
-                return hint
-        return (
+    if not same_distances(in_calm, [widened(*case) for case in calm]):
+        return recognised(in_calm, CALM_MISTAKES, [case[:2] for case in calm], same_distances) or (
             f"For σ = 1 m, a body of 1 m and no wind you get {float(in_calm[3]):.3f} m. Which radius holds 99.73 % in "
             "the plane, and how far does the body reach from its centre?"
         )
     in_wind = [safe_distance(*case) for case in windy]
-    if np.allclose(in_wind, [widened(*case) for case in windy], rtol=2e-4):
+    if same_distances(in_wind, [widened(*case) for case in windy]):
         return ""
-    for part, hint in WIND_MISTAKES:
-        wrong = [widened(sigma, body, (0.0, 0.0), normal) + part(mean, normal) for sigma, body, mean, normal in windy]
-        if np.allclose(in_wind, wrong, rtol=2e-4):
-            return hint
-    return "Without wind it is right. With wind: which part of the mean offset points towards the wall?"
+    return recognised(in_wind, WIND_MISTAKES, windy, same_distances) or (
+        "Without wind it is right. With wind: which part of the mean offset points towards the wall?"
+    )
 
 
 def widened(sigma: float, body: float, mean: Vector, normal: Vector) -> float:
     return float(minimum_safe_distance(pauta_radius(2) * sigma, body, mean_offset=mean, normal=normal))
+
+
+def widened_by(part: Callable[[Vector, Vector], float]) -> Callable[[float, float, Vector, Vector], float]:
+    """The distance without wind, and some part of the mean offset on top."""
+    return lambda sigma, body, mean, normal: widened(sigma, body, (0.0, 0.0), normal) + part(mean, normal)
 
 
 CALM_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
@@ -120,30 +124,30 @@ CALM_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
     ),
 ]
 
-WIND_MISTAKES: list[tuple[Callable[[Vector, Vector], float], str]] = [
+WIND_MISTAKES: list[tuple[Callable[[float, float, Vector, Vector], float], str]] = [
     (
-        lambda mean, normal: 0.0,
+        widened_by(lambda mean, normal: 0.0),
         "Without wind it is right, and with wind you get the same: what does the mean offset do to the margin?",
     ),
     (
-        lambda mean, normal: max(0.0, float(np.dot(mean, normal))),
+        widened_by(lambda mean, normal: max(0.0, float(np.dot(mean, normal)))),
         "You widen where the wind blows away from the wall. `normal` points away from it: which sign has wind towards "
         "it?",
     ),
     (
-        lambda mean, normal: -float(np.dot(mean, normal)),
+        widened_by(lambda mean, normal: -float(np.dot(mean, normal))),
         "Towards the wall it is right. Where the wind blows away you make the distance smaller: it may turn.",
     ),
     (
-        lambda mean, normal: float(np.dot(mean, normal)),
+        widened_by(lambda mean, normal: float(np.dot(mean, normal))),
         "Your distance shrinks where the wind blows towards the wall. `normal` points away from it.",
     ),
     (
-        lambda mean, normal: abs(float(np.dot(mean, normal))),
+        widened_by(lambda mean, normal: abs(float(np.dot(mean, normal)))),
         "You widen on both sides of the wind. Does wind away from the wall bring the UAV nearer to it?",
     ),
     (
-        lambda mean, normal: float(np.hypot(*mean)),
+        widened_by(lambda mean, normal: float(np.hypot(*mean))),
         "You add the whole mean offset at every wall. Along the wall it does no harm: which part points towards it?",
     ),
 ]
@@ -163,15 +167,14 @@ def exercise_3(without_gross_errors: Callable[[np.ndarray], np.ndarray]) -> str:
         answers.append(np.asarray(answer))
     if any(answer.dtype == bool for answer in answers):
         return "You return a mask. The answer is the samples themselves: index the array with the mask."
-    if all_equal(answers, [samples[pauta_filter(samples).kept] for samples in cases]):
-        return ""
-    for rule, hint in FILTER_MISTAKES:
-        if all_equal(answers, [rule(samples) for samples in cases]):
-            return hint
     right = [samples[pauta_filter(samples).kept] for samples in cases]
-    if all_equal([np.sort(answer, axis=None) for answer in answers], [np.sort(samples) for samples in right]):
+    if same_samples(answers, right):
+        return ""
+    if hint := recognised(answers, FILTER_MISTAKES, [(samples,) for samples in cases], same_samples):
+        return hint
+    if same_samples([np.sort(answer, axis=None) for answer in answers], [np.sort(samples) for samples in right]):
         return "These are the right samples in another order. Keep the order in which they were taken."
-    wrong = next(i for i, answer in enumerate(answers) if not all_equal([answer], [right[i]]))
+    wrong = next(i for i, answer in enumerate(answers) if not np.array_equal(answer, right[i]))
     return (
         f"Of {len(cases[wrong])} samples {len(right[wrong])} should be left, you keep {answers[wrong].size}. Print "
         "mean, σ and the number of samples in each round."
@@ -192,10 +195,6 @@ def contaminated_samples() -> list[np.ndarray]:
         samples = np.concatenate([good, errors])
         cases.append(samples[rng.permutation(len(samples))])
     return [*cases, np.linspace(-1.0, 1.0, 20)]
-
-
-def all_equal(answers: list[np.ndarray], expected: list[np.ndarray]) -> bool:
-    return all(np.array_equal(one, other) for one, other in zip(answers, expected, strict=True))
 
 
 def one_round(samples: np.ndarray) -> np.ndarray:

@@ -1,13 +1,16 @@
 """Checks of the exercises on prediction: predicting too low, the most probable class, figures that must be counts."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 from scipy.stats import norm
 
-from uavlab.exercises import NOTHING
+from uavlab.exercises.hints import NOTHING, alike, recognised
 
 FLIGHTS = (
     np.array([1, 2, 3, 4, 5, 6, 2, 1, 3, 2, 1, 4]),
@@ -46,6 +49,8 @@ PRINTED = [
 ]
 """Percentage and number of samples; the last five fit no count."""
 
+same = partial(alike, relative=0, absolute=1e-6)
+
 
 def exercise_1(answer: Callable[[np.ndarray, np.ndarray], float]) -> str:
     """03.1: the share of flights whose class was predicted too low."""
@@ -53,15 +58,14 @@ def exercise_1(answer: Callable[[np.ndarray, np.ndarray], float]) -> str:
     given = [answer(true, predicted), answer(true, true), answer(true, np.maximum(true - 1, 1))]
     if any(share is None for share in given):
         return NOTHING
-    right = [2 / 12, 0.0, float((true > 1).mean())]
-    if agree(given, right):
+    shares, right = np.asarray(given, dtype=float), [2 / 12, 0.0, float((true > 1).mean())]
+    if same(shares, right):
         return ""
-    for mistake, hint in LOW_MISTAKES:
-        if agree(given[:1], [mistake(true, predicted)]):
-            return hint
-    if agree(given, [len(true) * share for share in right]):
+    if hint := recognised(shares[:1], LOW_MISTAKES, [FLIGHTS], same):
+        return hint
+    if same(shares, [len(true) * share for share in right]):
         return "That is how many flights it was, not their share: divide by the number of all flights."
-    if agree(given, [100 * share for share in right]):
+    if same(shares, [100 * share for share in right]):
         return "That is in percent. A share lies between 0 and 1."
     return (
         f"Of twelve flights two were predicted too low, and you get {given[0]:.3g}. Compare the classes flight by "
@@ -74,15 +78,15 @@ def exercise_2(answer: Callable[[float, float, int], int]) -> str:
     given = [answer(*weather) for weather in WEATHERS]
     if any(number is None for number in given):
         return NOTHING
-    right = [most_probable(*weather) for weather in WEATHERS]
-    if agree(given, right):
+    classes, right = np.asarray(given, dtype=float), [most_probable(*weather) for weather in WEATHERS]
+    if same(classes, right):
         return ""
-    if agree(given, [number - 1 for number in right]):
+    if same(classes, [number - 1 for number in right]):
         return "All of your classes are one too low: NumPy counts from 0, classes from 1."
-    for mistake, hint in CLASS_MISTAKES:
-        if agree(given, [mistake(*weather) for weather in WEATHERS]):
-            return hint
-    weather, number = next((w, g) for w, g, r in zip(WEATHERS, given, right, strict=True) if not agree([g], [r]))
+    if hint := recognised(classes, CLASS_MISTAKES, WEATHERS, same):
+        return hint
+    index = next(i for i, (number, true) in enumerate(zip(classes, right, strict=True)) if not same(number, true))
+    weather, number = WEATHERS[index], given[index]
     return (
         f"With a median of {weather[0]:g} m, a spread of {weather[1]:g} and {weather[2]} classes you say {number}. "
         "Write down the probability of each class, see that they add up to 1, and take the largest."
@@ -94,26 +98,19 @@ def exercise_3(answer: Callable[[float, int], int]) -> str:
     given = [answer(*case) for case in PRINTED]
     if any(count is None for count in given):
         return "Your function returns nothing for some figures: where no count fits, return -1."
-    right = [count_of(*case) for case in PRINTED]
-    if agree(given, right):
+    counts, right = np.asarray(given, dtype=float), [count_of(*case) for case in PRINTED]
+    if same(counts, right):
         return ""
-    for mistake, hint in COUNT_MISTAKES:
-        if agree(given, [mistake(*case) for case in PRINTED]):
-            return hint
-    (percent, samples), count, fits = next(
-        (p, g, r) for p, g, r in zip(PRINTED, given, right, strict=True) if not agree([g], [r])
-    )
+    if hint := recognised(counts, COUNT_MISTAKES, PRINTED, same):
+        return hint
+    index = next(i for i, (count, fits) in enumerate(zip(counts, right, strict=True)) if not same(count, fits))
+    (percent, samples), count, fits = PRINTED[index], given[index], right[index]
     if fits < 0:
         return (
             f"For {percent:g} % of {samples} you return {count:g}. Put it back: 100·{count:g}/{samples} = "
             f"{100 * count / samples:.3f}."
         )
     return f"For {percent:g} % of {samples} you return {count:g}, but there is a count that is printed so: look nearby."
-
-
-def agree(given: Any, right: Any) -> bool:
-    """Whether numbers are the same to a millionth."""
-    return bool(np.allclose(np.asarray(given, dtype=float), np.asarray(right, dtype=float), rtol=0, atol=1e-6))
 
 
 def probabilities(median: float, spread: float, class_count: int) -> np.ndarray:

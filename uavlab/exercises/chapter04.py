@@ -1,12 +1,15 @@
 """Checks of the exercises on cities: node codes, the distance to a voxel, the clearance that a street keeps."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from uavlab.exercises import NOTHING
+from uavlab.exercises.hints import NOTHING, alike, recognised
 
 SHAPE = (4, 5, 6)
 """No two extents are equal, so that none can stand for another."""
@@ -24,6 +27,8 @@ STREETS = [(10.0, 4.0), (10.0, 3.0), (10.0, 0.6), (7.0, 2.0), (1.5, 1.0), (1.5, 
 ON_THE_WALL = [(10.0, 2.0), (2.0, 2.0), (12.0, 3.0)]
 """Gap and cell [m]; in the second list a grid can have centres on both walls."""
 
+same = partial(alike, relative=0, absolute=1e-6)
+
 
 def exercise_1(answer: Callable[[int, tuple[int, int, int]], Sequence[int]]) -> str:
     """04.1: from a node code back to its voxel."""
@@ -34,25 +39,25 @@ def exercise_1(answer: Callable[[int, tuple[int, int, int]], Sequence[int]]) -> 
     if any(np.shape(index) != (3,) for index in given):
         return "The answer must be three numbers: return i, j, k."
     nx, ny, nz = SHAPE
-    right = [(code // (ny * nz), code // nz % ny, code % nz) for code in codes]
-    if agree(given, right):
+    voxels, right = np.asarray(given, dtype=float), [(code // (ny * nz), code // nz % ny, code % nz) for code in codes]
+    if same(voxels, right):
         return ""
     if any(index != round(index) for triple in given for index in triple):
         return "Some of your indices are not whole numbers: / divides exactly, // counts how often it fits."
-    if agree(given, [index[::-1] for index in right]):
+    if same(voxels, [index[::-1] for index in right]):
         return "These are the right three numbers in the wrong order: i counts the slabs, k the voxels within a row."
-    if agree(given, [(code % nx, code // nx % ny, code // (nx * ny)) for code in codes]):
+    if same(voxels, [(code % nx, code // nx % ny, code // (nx * ny)) for code in codes]):
         return (
             "You let i change fastest. In Eq. 4 it is k that has no factor: the next code is the voxel above, "
             "not the one to the east."
         )
-    if agree(given, [(i, code // nz, k) for code, (i, _, k) in zip(codes, right, strict=True)]):
+    if same(voxels, [(i, code // nz, k) for code, (i, _, k) in zip(codes, right, strict=True)]):
         return (
             "i and k are right, j grows too large: code // nz counts the rows of all slabs before, not only those "
             "of its own."
         )
-    code, index = next((c, g) for c, g, r in zip(codes, given, right, strict=True) if not agree(g, r))
-    i, j, k = (int(value) for value in index)
+    code = next(code for code in codes if not same(voxels[code], right[code]))
+    i, j, k = (int(value) for value in given[code])
     return (
         f"On a map of {SHAPE} voxels you give code {code} the voxel {(i, j, k)}. Put it into Eq. 4: "
         f"k + nz·(j + ny·i) = {k + nz * (j + ny * i)}. Indices run from 0 to {(nx - 1, ny - 1, nz - 1)}."
@@ -66,13 +71,13 @@ def exercise_2(answer: Callable[[np.ndarray, np.ndarray, float], float]) -> str:
         return NOTHING
     if any(np.shape(distance) != () for distance in given):
         return "The answer must be one number: the three axes still have to be joined to one distance."
-    if agree(given, [box_distance(*case) for case in BOXES]):
+    distances, right = np.asarray(given, dtype=float), [box_distance(*case) for case in BOXES]
+    if same(distances, right):
         return ""
-    for mistake, hint in BOX_MISTAKES:
-        if agree(given, [mistake(*case) for case in BOXES]):
-            return hint
-    case, distance = next((c, d) for c, d in zip(BOXES, given, strict=True) if not agree(d, box_distance(*c)))
-    point, voxel, cell = case
+    if hint := recognised(distances, BOX_MISTAKES, BOXES, same):
+        return hint
+    index = next(i for i, (found, true) in enumerate(zip(distances, right, strict=True)) if not same(found, true))
+    (point, voxel, cell), distance = BOXES[index], given[index]
     return (
         f"For the point {point} m and voxel {voxel} of {cell:g} m you get {distance:.3f} m. Where does the voxel "
         "begin and end on each axis, in metres, and how far outside is the point on each?"
@@ -84,27 +89,23 @@ def exercise_3(answer: Callable[[float, float], float]) -> str:
     given = [answer(gap, cell) for gap, cell in STREETS + ON_THE_WALL]
     if any(clearance is None for clearance in given):
         return NOTHING
-    right = [certain_clearance(gap, cell) for gap, cell in STREETS + ON_THE_WALL]
-    if agree(given, right):
+    clearances, right = np.asarray(given, dtype=float), [certain_clearance(*case) for case in STREETS + ON_THE_WALL]
+    if same(clearances, right):
         return ""
-    if agree(given[: len(STREETS)], right[: len(STREETS)]):
+    in_streets = clearances[: len(STREETS)]
+    if same(in_streets, right[: len(STREETS)]):
         return (
             "Right, but for streets that are a whole number of cells wide. There a grid can have a centre on each "
             "wall, and a centre on a wall is inside it: how many are left?"
         )
-    for mistake, hint in STREET_MISTAKES:
-        if agree(given[: len(STREETS)], [mistake(gap, cell) for gap, cell in STREETS]):
-            return hint
-    case, clearance = next((c, g) for c, g, r in zip(STREETS, given, right, strict=False) if not agree(g, r))
+    if hint := recognised(in_streets, STREET_MISTAKES, STREETS, same):
+        return hint
+    index = next(i for i, found in enumerate(in_streets) if not same(found, right[i]))
+    gap, cell = STREETS[index]
     return (
-        f"For a street of {case[0]:g} m and voxels of {case[1]:g} m you get {clearance:g} m. Draw the street, lay the "
+        f"For a street of {gap:g} m and voxels of {cell:g} m you get {given[index]:g} m. Draw the street, lay the "
         "row of centres into it so that as few as possible fall between the walls, and measure from the middle one."
     )
-
-
-def agree(given: Any, right: Any) -> bool:
-    """Whether numbers are the same to a millionth."""
-    return bool(np.allclose(np.asarray(given, dtype=float), np.asarray(right, dtype=float), rtol=0, atol=1e-6))
 
 
 def from_center(point: Sequence[float], voxel: Sequence[int], cell: float) -> np.ndarray:

@@ -3,13 +3,16 @@
 A mistake is recognised by what it answers; its hint says why that can't be.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from uavlab.exercises import NOTHING
+from uavlab.exercises.hints import NOTHING, each_alike, recognised
 
 GRAVITY = 9.81
 FALLS = [
@@ -26,6 +29,10 @@ BLOWS = [(energy, shelter) for energy in (5.0, 34.0, 100.0, 555.0, 1e4, 1e6) for
 IN_THE_OPEN = [(5.0, 0.0), (33.0, 0.0), (35.0, 0.0), (555.0, 0.0), (1e7, 0.0)]
 
 
+def same(given: Sequence[Any], right: Sequence[float], relative: float = 1e-9) -> bool:
+    return each_alike(map(float, given), right, partial(math.isclose, rel_tol=relative, abs_tol=1e-15))
+
+
 def exercise_1(answer: Callable[[float, float, float, float], float]) -> str:
     """05.1: vertical speed after a fall from rest with drag."""
     given = [answer(*fall) for fall in FALLS]
@@ -33,11 +40,11 @@ def exercise_1(answer: Callable[[float, float, float, float], float]) -> str:
         return NOTHING
     if any(np.shape(speed) != () for speed in given):
         return "The answer must be one number, the speed in m/s."
-    if agree(given, [speed_after(*fall) for fall in FALLS], tolerance=1e-3):  # g = 9.8 m/s² is right too
+    same_speeds = partial(same, relative=1e-3)  # g = 9.8 m/s² is right too
+    if same_speeds(given, [speed_after(*fall) for fall in FALLS]):
         return ""
-    for mistake, hint in FALL_MISTAKES:
-        if agree(given, [mistake(*fall) for fall in FALLS], tolerance=1e-3):
-            return hint
+    if hint := recognised(given, FALL_MISTAKES, FALLS, same_speeds):
+        return hint
     if any(not np.isfinite(speed) for speed in given):
         return "Some speeds are no finite number. What is under the root, and can it be negative?"
     return (
@@ -107,11 +114,8 @@ def exercise_2(answer: Callable[[float, float], float]) -> str:
     given = [answer(*blow) for blow in BLOWS]
     if any(chance is None for chance in given):
         return NOTHING
-    if not agree(given, [chance_to_die(*blow) for blow in BLOWS]):
-        for mistake, hint in FATALITY_MISTAKES:
-            if agree(given, [mistake(*blow) for blow in BLOWS]):
-                return hint
-        return (
+    if not same(given, [chance_to_die(*blow) for blow in BLOWS]):
+        return recognised(given, FATALITY_MISTAKES, BLOWS, same) or (
             f"Behind shelter 0.5 a blow of 555 J kills with {answer(555.0, 0.5):.4f}, you say. Two tests: 10⁶ J must "
             "kill one in two there, and at 34 J the shelter must make no difference."
         )
@@ -126,11 +130,11 @@ def exercise_2(answer: Callable[[float, float], float]) -> str:
         return "With shelter it is right. In the open the power grows without bound: what does the chance go to then?"
     if any(chance is None for chance in limits):
         return "With shelter it is right. In the open your function returns nothing."
-    if agree(limits, [0, 0, 1, 1, 1]):
+    if same(limits, [0, 0, 1, 1, 1]):
         return ""
-    if agree(limits, [1, 1, 1, 1, 1]):
+    if same(limits, [1, 1, 1, 1, 1]):
         return "With shelter it is right. In the open you let every blow kill, one of 5 J too. What does β mean?"
-    if agree(limits, [1, 1, 0, 0, 0]):
+    if same(limits, [1, 1, 0, 0, 0]):
         return "With shelter it is right. In the open it is the wrong way round: more energy can't kill less."
     return (
         f"With shelter it is right. In the open you have {limits[1]:.3g} for 33 J and {limits[2]:.3g} for 35 J. Let "
@@ -181,11 +185,10 @@ def exercise_3(answer: Callable[[np.ndarray, np.ndarray, float, float], float]) 
         return NOTHING
     if any(np.shape(cost) != () for cost in given):
         return "The answer must be one number: the parts of the route still have to be added up."
-    if agree(given, [expected_deaths(*mission) for mission in missions], tolerance=1e-6):
+    if same(given, [expected_deaths(*mission) for mission in missions], relative=1e-6):
         return ""
-    for mistake, hint in ROUTE_MISTAKES:
-        if agree(given, [mistake(*mission) for mission in missions]):
-            return hint
+    if hint := recognised(given, ROUTE_MISTAKES, missions, same):
+        return hint
     level = np.full((3, 1, 1), 3.6)
     straight = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0)])
     cost = float(answer(level, straight, 5.0, 10.0))
@@ -289,7 +292,3 @@ ROUTE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray, float, float], floa
         "does the UAV take for them?",
     ),
 ]
-
-
-def agree(given: Sequence[Any], right: Sequence[float], tolerance: float = 1e-9) -> bool:
-    return all(math.isclose(float(g), r, rel_tol=tolerance, abs_tol=1e-15) for g, r in zip(given, right, strict=True))

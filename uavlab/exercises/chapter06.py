@@ -4,12 +4,18 @@ A hint says which mistake the answers look like and why it is one. Mistakes are 
 by how they are written.
 """
 
+from __future__ import annotations
+
 import itertools
 import math
+import operator
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
+
+from uavlab.exercises.hints import each_alike, recognised
 
 Move = tuple[int, ...]
 Graph = Mapping[Any, Mapping[Any, float]]
@@ -20,26 +26,29 @@ MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if
 def exercise_1(octile: Callable[[int, int, int], float]) -> str:
     """06.1: the shortest way over 26 moves on an empty map, from the differences of the coordinates."""
     sorted_ahead = [(5, 3, 1), (7, 7, 2), (9, 4, 4), (6, 0, 0), (3, 3, 3), (8, 2, 0), (0, 0, 0)]
-
-    def agrees(formula: Callable[..., float], offsets: Sequence[Move]) -> bool:
-        return all(math.isclose(octile(*o), formula(*o), rel_tol=1e-9, abs_tol=1e-9) for o in offsets)
-
-    if agrees(octile_distance, sorted_ahead):
+    if is_octile(octile, sorted_ahead):
         shuffled = [order for offset in sorted_ahead for order in itertools.permutations(offset)]
-        if not agrees(octile_distance, shuffled):
+        if not is_octile(octile, shuffled):
             return "It is right where |dx| ≥ |dy| ≥ |dz|. The goal may lie anywhere: which of the three is largest?"
         mirrored = [tuple(s * d for s, d in zip(sign, o, strict=True)) for sign in MOVES for o in shuffled if all(sign)]
-        if not agrees(octile_distance, mirrored):
+        if not is_octile(octile, mirrored):
             return (
                 "It is right for goals to the north-east and above. What are dx, dy, dz when the goal lies to the west?"
             )
         return ""
-    for formula, hint in OCTILE_MISTAKES:
-        if agrees(formula, sorted_ahead):
-            return hint
-    return (
+    return recognised(octile, OCTILE_MISTAKES, sorted_ahead, partial(same_at, offsets=sorted_ahead)) or (
         f"For (5, 3, 1) you get {octile(5, 3, 1):.3f}. Which five moves make the shortest way, and how long are they?"
     )
+
+
+def same_at(octile: Callable[..., float], wanted: Sequence[float], offsets: Sequence[Move]) -> bool:
+    """Whether a function gives these distances; it is asked no further than the first that is wrong."""
+    given = itertools.starmap(octile, offsets)
+    return each_alike(given, wanted, partial(math.isclose, rel_tol=1e-9, abs_tol=1e-9))
+
+
+def is_octile(octile: Callable[..., float], offsets: Sequence[Move]) -> bool:
+    return same_at(octile, [octile_distance(*offset) for offset in offsets], offsets)
 
 
 def octile_distance(dx: int, dy: int, dz: int) -> float:
@@ -91,9 +100,8 @@ def exercise_2(legal: Callable[[np.ndarray, Move, Move], bool]) -> str:
     beyond = [case for case in cases if not is_inside(case[0], target_of(*case[1:]))]
     answers = [bool(legal(*case)) for case in within]
     if answers != [box_is_free(*case) for case in within]:
-        for rule, hint in LEGAL_MISTAKES:
-            if answers == [rule(*case) for case in within]:
-                return hint
+        if hint := recognised(answers, LEGAL_MISTAKES, within, operator.eq):
+            return hint
         wrong = next(case for case, answer in zip(within, answers, strict=True) if answer != box_is_free(*case))
         blocked = int(sum(wrong[0][voxel] for voxel in box_of(*wrong[1:])))
         return (
@@ -154,45 +162,64 @@ LEGAL_MISTAKES: list[tuple[Callable[[np.ndarray, Move, Move], bool], str]] = [
 ]
 
 
+def zero(place: Any) -> float:
+    """An estimate that knows nothing."""
+    return 0.0
+
+
+TRAPS: list[tuple[Graph, str, Callable[[Any], float], float, str]] = [
+    (
+        {"a": {"b": 1.0}, "b": {"c": 1.0}, "c": {}},
+        "c",
+        {"a": 2.0, "b": 1.0, "c": 0.0}.__getitem__,
+        2.0,
+        "The only way is a–b–c, twice 1 long, and the estimate is exact: your cost is {}. "
+        "What has been added to g that is no road?",
+    ),
+    (
+        {"a": {"b": 1.0, "c": 4.0}, "b": {"d": 3.0}, "c": {"d": 1.0}, "d": {}},
+        "d",
+        {"a": 4.0, "b": 3.0, "c": 1.0, "d": 0.0}.__getitem__,
+        4.0,
+        "a–b–d is 1 + 3 long, a–c–d is 4 + 1: your cost is {}. c is nearer to the goal than b, but the way to "
+        "it is longer. In which order do nodes come out of the open list?",
+    ),
+    (
+        {"a": {"b": 5.0, "c": 1.0}, "b": {"d": 1.0}, "c": {"b": 1.0}, "d": {}},
+        "d",
+        zero,
+        3.0,
+        "a–b is 5, a–c and c–b are 1 each, b–d is 1: your cost from a to d is {}. "
+        "The direct way to b is found first. What happens when a better one turns up while b still waits?",
+    ),
+    (
+        {"a": {"c": 10.0, "b": 1.0}, "b": {"c": 1.0}, "c": {}},
+        "c",
+        zero,
+        2.0,
+        "a–c is 10, a–b and b–c are 1 each: your cost from a to c is {}. When is the way to the goal known to "
+        "be the cheapest: when the goal is put into the open list, or when it is taken out?",
+    ),
+    (
+        {"a": {}, "b": {}},
+        "b",
+        zero,
+        math.inf,
+        "Where there is no way the cost is infinite: return math.inf when the open list is empty.",
+    ),
+]
+"""Roads, the goal, an estimate, the cost from a, and what a search with another cost should be asked."""
+
+
 def exercise_3(search: Callable[[Graph, Any, Any, Callable[[Any], float]], float]) -> str:
     """06.3: the cost of the cheapest way through a graph, by an A* that is right."""
-
-    def zero(place: Any) -> float:
-        return 0.0
-
-    chain: Graph = {"a": {"b": 1.0}, "b": {"c": 1.0}, "c": {}}
-    steps_left = {"a": 2.0, "b": 1.0, "c": 0.0}
-    cost = search(chain, "a", "c", steps_left.__getitem__)
-    if cost is None:
-        return "Your search returns nothing: its answer is the cost of the cheapest way."
-    if cost != 2:
-        return (
-            f"The only way is a–b–c, twice 1 long, and the estimate is exact: your cost is {cost}. "
-            "What has been added to g that is no road?"
-        )
-    fork: Graph = {"a": {"b": 1.0, "c": 4.0}, "b": {"d": 3.0}, "c": {"d": 1.0}, "d": {}}
-    cost = search(fork, "a", "d", {"a": 4.0, "b": 3.0, "c": 1.0, "d": 0.0}.__getitem__)
-    if cost != 4:
-        return (
-            f"a–b–d is 1 + 3 long, a–c–d is 4 + 1: your cost is {cost}. c is nearer to the goal than b, but the way to "
-            "it is longer. In which order do nodes come out of the open list?"
-        )
-    late: Graph = {"a": {"b": 5.0, "c": 1.0}, "b": {"d": 1.0}, "c": {"b": 1.0}, "d": {}}
-    cost = search(late, "a", "d", zero)
-    if cost != 3:
-        return (
-            f"a–b is 5, a–c and c–b are 1 each, b–d is 1: your cost from a to d is {cost}. "
-            "The direct way to b is found first. What happens when a better one turns up while b still waits?"
-        )
-    direct: Graph = {"a": {"c": 10.0, "b": 1.0}, "b": {"c": 1.0}, "c": {}}
-    cost = search(direct, "a", "c", zero)
-    if cost != 2:
-        return (
-            f"a–c is 10, a–b and b–c are 1 each: your cost from a to c is {cost}. When is the way to the goal known to "
-            "be the cheapest: when the goal is put into the open list, or when it is taken out?"
-        )
-    if search({"a": {}, "b": {}}, "a", "b", zero) != math.inf:
-        return "Where there is no way the cost is infinite: return math.inf when the open list is empty."
+    for number, (roads, goal, estimate_of, right, hint) in enumerate(TRAPS):
+        own_roads = {place: dict(ways) for place, ways in roads.items()}  # a search may cross out what it has seen
+        cost = search(own_roads, "a", goal, estimate_of)
+        if cost is None and number == 0:
+            return "Your search returns nothing: its answer is the cost of the cheapest way."
+        if cost != right:
+            return hint.format(cost)
     for seed in range(40):
         graph, estimate = random_roads(seed)
         cost, cheapest = search(graph, 0, 11, estimate.__getitem__), cheapest_way(graph, 0, 11)

@@ -4,14 +4,19 @@ A hint says which mistake the answers look like and why it is one. Mistakes are 
 by how they are written.
 """
 
+from __future__ import annotations
+
 import itertools
 import math
+import operator
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
+from uavlab.exercises.hints import alike, each_alike, recognised
 from uavlab.planners import repulsion
 
 Vector = Sequence[float] | np.ndarray
@@ -42,20 +47,16 @@ def exercise_1(push_of_voxel: Callable[..., np.ndarray]) -> str:
     if any(np.shape(answer) != (3,) for answer in answers):
         return f"The force is a vector of three numbers, yours has the shape {np.shape(answers[0])}."
     given = np.array(answers, dtype=float)
-
-    def agrees(force: Callable[..., np.ndarray], chosen: np.ndarray) -> bool:
-        wanted = np.array([force(*question) for question in questions])
-        return bool(np.allclose(given[chosen], wanted[chosen], rtol=1e-9, atol=1e-12))
-
-    if agrees(push_within_reach, within):
-        if agrees(push_everywhere, ~within):
+    same = partial(alike, relative=1e-9, absolute=1e-12)
+    near, far = (list(itertools.compress(questions, chosen)) for chosen in (within, ~within))
+    if same(given[within], [push_within_reach(*question) for question in near]):
+        if same(given[~within], [push_everywhere(*question) for question in far]):
             return "Right within the reach. Beyond it your voxel attracts: what is the sign of 1/D − 1/R there?"
-        if not agrees(push_within_reach, ~within):
+        if not same(given[~within], [push_within_reach(*question) for question in far]):
             return "Right within the reach. How large is the force beyond it?"
         return ""
-    for mistake, hint in PUSH_MISTAKES:
-        if agrees(mistake, within):
-            return hint
+    if hint := recognised(given[within], PUSH_MISTAKES, near, same):
+        return hint
     point, low = (3.0, 0.5, 0.5), (0, 0, 0)
     size = float(np.linalg.norm(push_of_voxel(point, low, 7.0, 4.0)))
     return (
@@ -142,15 +143,11 @@ def exercise_2(balance: Callable[[float, float, float], float]) -> str:
         return "Your function returns nothing: its answer is the distance [m]."
     if any(np.ndim(answer) != 0 for answer in answers):
         return f"The answer is one number, yours has the shape {np.shape(answers[0])}."
-
-    def agrees(formula: Callable[[float, float, float], float]) -> bool:
-        return all(math.isclose(a, formula(*q), abs_tol=1e-6) for a, q in zip(answers, questions, strict=True))
-
-    if agrees(stopping_distance):
+    same = partial(each_alike, same=partial(math.isclose, abs_tol=1e-6))
+    if same(answers, [stopping_distance(*question) for question in questions]):
         return ""
-    for mistake, hint in BALANCE_MISTAKES:
-        if agrees(mistake):
-            return hint
+    if hint := recognised(answers, BALANCE_MISTAKES, questions, same):
+        return hint
     pull, push, reach = questions[0]
     if not 0 < answers[0] <= reach:
         return f"For a pull of 1, k_rep = 5 and R = 5 m you get {answers[0]:.4g} m. Between which two must it lie?"
@@ -218,9 +215,9 @@ def exercise_3(best_move: Callable[[Vector, list[Move]], Any]) -> str:
             return "A move at 90° to the force gains nothing, and you take it: it should be below 90°."
         return "" if best_move((1.0, 0.0, 0.0), []) is None else "Without a legal move there is none to return: None."
     answered = [n for n in open_way if chosen[n] is not None]
-    for mistake, hint in MOVE_MISTAKES:
-        if all(chosen[n] == mistake(*questions[n]) for n in answered):
-            return hint
+    moves_taken = [chosen[n] for n in answered]
+    if hint := recognised(moves_taken, MOVE_MISTAKES, [questions[n] for n in answered], operator.eq):
+        return hint
     n = next(n for n in open_way if chosen[n] != wanted[n])
     force, moves = questions[n]
     given = "None" if chosen[n] is None else f"{chosen[n]}, at {angle_deg(force, chosen[n]):.0f}°"

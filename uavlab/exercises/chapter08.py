@@ -4,12 +4,16 @@ A hint says which mistake the answers look like and why it is one. Mistakes are 
 by how they are written.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from itertools import product
 
 import numpy as np
 
+from uavlab.exercises.hints import alike, each_alike, recognised
 from uavlab.planners import repulsion
 from uavlab.resilience import DISTURBANCES, LEVELS, LOADS, ConditionCheck, resilience_level
 
@@ -29,11 +33,9 @@ def exercise_1(price: Price) -> str:
     in_calm = [price(*case) for case in CALM]
     if any(answer is None for answer in in_calm):
         return "Your function returns nothing: its answer is a price."
-    if not np.allclose(in_calm, [right_price(*case) for case in CALM], rtol=1e-6):
-        for formula, hint in CALM_MISTAKES:
-            if np.allclose(in_calm, [formula(d, keep, load) for d, keep, _, _, load in CALM], rtol=1e-6):
-                return hint
-        return (
+    if not alike(in_calm, [right_price(*case) for case in CALM]):
+        without_wind = [(d, keep, load) for d, keep, _, _, load in CALM]
+        return recognised(in_calm, CALM_MISTAKES, without_wind, alike) or (
             f"For {CALM[2][0]} m from a wall, D_min = 5.5 m, no wind and λ = 0.5 you get {float(in_calm[2]):.3f}. "
             "Write the reasons in the bracket of Eq. 5 one below the other: how large is each?"
         )
@@ -44,12 +46,11 @@ def exercise_1(price: Price) -> str:
             f"{float(outside[0]):.3f}: what is O_risk there?"
         )
     in_wind = [price(*case) for case in WINDY]
-    if np.allclose(in_wind, [right_price(*case) for case in WINDY], rtol=1e-6):
+    if alike(in_wind, [right_price(*case) for case in WINDY]):
         return ""
-    for part, hint in WIND_MISTAKES:
-        if np.allclose(in_wind, [part(*case) for case in WINDY], rtol=1e-6):
-            return hint
-    return "Without wind it is right. With wind: which part of it points towards the wall, and what does the rest do?"
+    return recognised(in_wind, WIND_MISTAKES, WINDY, alike) or (
+        "Without wind it is right. With wind: which part of it points towards the wall, and what does the rest do?"
+    )
 
 
 def pushed(distance: float, keep: float) -> float:
@@ -169,11 +170,11 @@ def exercise_3(boundaries: Callable[[Sequence[float], float, float, int, float],
         return f"There are six offsets in the example, and you return {len(example)} boundaries."
     cases = [[1, 2.7, 1, 1, 1, 1], *([float(o) for o in offsets_seen(seed)] for seed in range(6))]
     answers = [np.asarray(boundaries(case, 2.0, 0.5, 3, 0.8), dtype=float) for case in cases]
-    if all(np.allclose(answer, checked(case)) for answer, case in zip(answers, cases, strict=True)):
+    same = partial(each_alike, same=np.allclose)
+    if same(answers, [checked(case) for case in cases]):
         return ""
-    for how, hint in BOUNDARY_MISTAKES:
-        if all(np.allclose(answer, how(case)) for answer, case in zip(answers, cases, strict=True)):
-            return hint
+    if hint := recognised(answers, BOUNDARY_MISTAKES, [(case,) for case in cases], same):
+        return hint
     case, answer = next((c, a) for c, a in zip(cases, answers, strict=True) if not np.allclose(a, checked(c)))
     first = int(np.argmax(~np.isclose(answer, checked(case))))
     before = checked(case)[first - 1] if first else 2.0

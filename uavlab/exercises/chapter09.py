@@ -4,13 +4,16 @@ A hint says which mistake the answers look like and why it is one. Mistakes are 
 by how they are written.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
-from uavlab.exercises import NOTHING
+from uavlab.exercises.hints import NOTHING, each_alike, recognised
 
 Odds = Callable[[np.ndarray, np.ndarray, float, float], npt.ArrayLike]
 Update = Callable[[np.ndarray, list[list[int]], list[float], float, float, float, float], npt.ArrayLike]
@@ -29,14 +32,9 @@ def exercise_1(odds: Odds) -> str:
         return NOTHING
     if any(np.shape(answer) != case[0].shape for answer, case in zip(answers, usual, strict=True)):
         return f"For two neighbours the answer is two probabilities; yours has the shape {np.shape(answers[0])}."
-
-    def agrees(formula: Callable[..., np.ndarray]) -> bool:
-        return all(np.allclose(a, formula(*case), rtol=1e-6) for a, case in zip(answers, usual, strict=True))
-
-    if not agrees(right_odds):
-        for formula, hint in ODDS_MISTAKES:
-            if agrees(formula):
-                return hint
+    if not each_alike(answers, [right_odds(*case) for case in usual]):
+        if hint := recognised(answers, ODDS_MISTAKES, usual, each_alike):
+            return hint
         sums = [float(np.sum(answer)) for answer in answers]
         if not np.allclose(sums, 1.0):
             return f"The ant goes somewhere for certain: the probabilities should add up to 1, yours to {sums[0]:.4g}."
@@ -44,6 +42,11 @@ def exercise_1(odds: Odds) -> str:
             "They add up to 1, but the shares are wrong. By hand: two neighbours, τ = (1, 4), η = (1, 1), α = 0.5, "
             "any β. How many times likelier is the second?"
         )
+    return beyond_floats(odds)
+
+
+def beyond_floats(odds: Odds) -> str:
+    """A hint for where powers leave the range of floats, or a scent is gone."""
     far = 1 / np.array([30.0, 31.0, 29.0])
     for name, case in {
         "β = 80, 150 m from the goal, after 440 generations": (
@@ -112,26 +115,20 @@ ODDS_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
 def exercise_2(update: Update) -> str:
     """09.2: the pheromone after a generation, with evaporation, deposits and limits."""
     case = (np.array([10.0, 10.0, 10.0, 10.0]), [[0, 1], [0, 2]], [20.0, 50.0], 0.8, 100.0, 0.0, 15.0)
-    answers = [given(update, one) for one in (case, *UPDATES)]
+    cases = (case, *UPDATES)
+    answers = [given(update, one) for one in cases]
     if any(answer is None for answer in answers):
         return NOTHING
-    wanted = updated(*case)
-    if np.shape(answers[0]) != wanted.shape:
+    if np.shape(answers[0]) != case[0].shape:
         return f"There are four nodes in the example, your answer has the shape {np.shape(answers[0])}."
     kept = np.ones(3)
     update(kept, [[0]], [10.0], 0.5, 1.0, 0.0, 5.0)
-
-    def agrees(rule: Callable[..., np.ndarray]) -> bool:
-        return all(np.allclose(a, rule(*one)) for a, one in zip(answers, (case, *UPDATES), strict=True))
-
-    if agrees(updated):
+    same = partial(each_alike, same=np.allclose)
+    if same(answers, [updated(*one) for one in cases]):
         if not np.array_equal(kept, np.ones(3)):
             return "The numbers are right, but you change the array that you were given. Work on a copy of it."
         return ""
-    for rule, hint in UPDATE_MISTAKES:
-        if agrees(rule):
-            return hint
-    return (
+    return recognised(answers, UPDATE_MISTAKES, cases, same) or (
         f"Four nodes with τ = 10, two ants over nodes (0, 1) and (0, 2), of 20 and 50 m, ρ = 0.8, Q = 100, no limits "
         f"that bind: you get {np.round(np.asarray(answers[0], dtype=float), 3)}. Node 3 was walked by nobody: what is "
         "left of its scent? And what comes on top at node 0?"
@@ -228,7 +225,7 @@ UPDATE_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
 
 def exercise_3(until: Until) -> str:
     """09.3: the generation in which the scent of the busiest node reaches τ_max, or None."""
-    printed, forgetful, first = (9.0, 10, 100.0, 150.0, 0.8, 15.0), (5.0, 10, 100.0, 150.0, 0.5, 15.0), REACHED[0]
+    first = REACHED[0]
     answers = [until(*case) for case in REACHED]
     if all(answer is None for answer in answers):
         return (
@@ -237,25 +234,17 @@ def exercise_3(until: Until) -> str:
         )
     if any(answer is not None and np.ndim(answer) != 0 for answer in answers):
         return "The answer is one whole number of generations, or None."
-
-    def agrees(rule: Callable[..., int | None]) -> bool:
-        wanted = [rule(*case) for case in REACHED]
-        return all(
-            (a is None and w is None) or (a is not None and w is not None and float(a) == w)
-            for a, w in zip(answers, wanted, strict=True)
-        )
-
-    if not agrees(capped):
-        for rule, hint in CAP_MISTAKES:
-            if agrees(rule):
-                return hint
+    same = partial(each_alike, same=same_generation)
+    if not same(answers, [capped(*case) for case in REACHED]):
+        if hint := recognised(answers, CAP_MISTAKES, REACHED, same):
+            return hint
         number = next(n for n, (a, c) in enumerate(zip(answers, REACHED, strict=True)) if a != capped(*c))
         start, ants, deposit, length, evaporation, most = REACHED[number]
         return (
             f"τ = {start:g} at first, {ants} ants on {length:g} m, Q = {deposit:g}, ρ = {evaporation:g}, τ_max = "
             f"{most:g}: you say {answers[number]}. Write down the scent after generations 1, 2 and 3."
         )
-    for case in (printed, forgetful):
+    for case in NEVER_REACHED:
         answer = until(*case)
         if answer is not None:
             rest = case[1] * case[2] / (case[4] * case[3])
@@ -266,6 +255,10 @@ def exercise_3(until: Until) -> str:
     if until(15.0, 10, 100.0, 150.0, 0.8, 15.0) != 0:
         return "Where the scent is at τ_max from the beginning, the answer is 0 generations."
     return ""
+
+
+def same_generation(one: float | None, other: int | None) -> bool:
+    return one is other if one is None or other is None else float(one) == other
 
 
 def capped(
@@ -300,6 +293,8 @@ REACHED = [
     (6.0, 10, 80.0, 150.0, 0.3, 15.0),
     (0.05, 3, 400.0, 140.0, 0.1, 15.0),
 ]
+NEVER_REACHED = [(9.0, 10, 100.0, 150.0, 0.8, 15.0), (5.0, 10, 100.0, 150.0, 0.5, 15.0)]
+"""First τ, ants, Q, length [m], ρ and τ_max; the second list has the printed ρ first."""
 
 CAP_MISTAKES: list[tuple[Callable[..., int | None], str]] = [
     (

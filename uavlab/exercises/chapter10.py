@@ -4,15 +4,20 @@ A hint says which mistake the answers look like and why it is one. Mistakes are 
 by how they are written.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from uavlab.exercises import NOTHING
+from uavlab.exercises.hints import NOTHING, alike, recognised
 
 Step = tuple[np.ndarray, np.ndarray]
 Function = Callable[[np.ndarray], float]
+
+same = partial(alike, relative=1e-9)
 
 
 def exercise_1(fly: Callable[..., Any]) -> str:
@@ -34,28 +39,22 @@ def exercise_1(fly: Callable[..., Any]) -> str:
             return (
                 f"Positions and velocities have shape {question[0].shape}, as x; yours have {shapes[0]}, {shapes[1]}."
             )
-
-    def agrees(rule: Callable[..., Step], part: int | None = None) -> bool:
-        wanted = [rule(*question) for question in questions]
-        parts = (0, 1) if part is None else (part,)
-        return all(np.allclose(g[p], w[p], rtol=1e-9) for g, w in zip(given, wanted, strict=True) for p in parts)
-
-    if agrees(flown):
+    right = [flown(*question) for question in questions]
+    if same(given, right):
         return ""
-    for mistake, hint in FLIGHT_MISTAKES:
-        if agrees(mistake):
-            return hint
-    if agrees(flown, 0):
+    if hint := recognised(given, FLIGHT_MISTAKES, questions, same):
+        return hint
+    if same([x for x, _ in given], [x for x, _ in right]):
         return "The positions are right. The velocities should be those with which the particles flew there."
-    if agrees(flown, 1):
+    if same([v for _, v in given], [v for _, v in right]):
         return (
             "The velocities are right. Where does a particle come with its new velocity, and what if that is outside?"
         )
     x, v = (float(part[0, 0]) for part in (given[0][0], given[0][1]))
-    right = flown(*questions[0])
+    right_x, right_v = (float(part[0, 0]) for part in right[0])
     return (
         f"A coordinate at {questions[0][0][0, 0]:.3f} with velocity {questions[0][1][0, 0]:.3f} comes to {x:.3f} with "
-        f"{v:.3f}, and should to {right[0][0, 0]:.3f} with {right[1][0, 0]:.3f}. Write the three terms of the velocity "
+        f"{v:.3f}, and should to {right_x:.3f} with {right_v:.3f}. Write the three terms of the velocity "
         "one below the other: how large is each?"
     )
 
@@ -166,19 +165,13 @@ def exercise_2(walk: Callable[..., Any]) -> str:
         if np.shape(answer) != (3,):
             return f"The answer is a point of three numbers here, as x; yours has the shape {np.shape(answer)}."
         given.append(np.asarray(answer, dtype=float))
-
-    def agrees(rule: Callable[..., np.ndarray]) -> bool:
-        wanted = [rule(*question) for question in questions]
-        return bool(np.allclose(given, wanted, rtol=1e-9))
-
-    if agrees(walked):
+    if same(given, [walked(*question) for question in questions]):
         stay = walk(lambda point: 1.0, np.zeros(3), np.ones(3), 1.0, 1.0)
         if np.allclose(stay, 0.0):
             return ""
         return "Where both sides smell the same your beetle walks. Which side is better there?"
-    for mistake, hint in WALK_MISTAKES:
-        if agrees(mistake):
-            return hint
+    if hint := recognised(given, WALK_MISTAKES, questions, same):
+        return hint
     f, x, b, reach, step = questions[0]
     gone, along = given[0] - x, b / np.linalg.norm(b)
     return (
@@ -277,26 +270,26 @@ def exercise_3(share_of_wins: Callable[..., Any]) -> str:
             )
         answers.append(np.ravel(np.asarray(answer, dtype=float)))
     given = np.array(answers)
+    same_shares = partial(alike, relative=1e-5, absolute=1e-9)
+    right = [won(*question).mean() for question in questions]
+    if not same_shares(given[:, 0], right):
+        return recognised(given[:, 0], SHARE_MISTAKES, questions, same_shares) or (
+            f"For the first of our questions your share is {given[0, 0]:.4f}; it should be {right[0]:.4f}."
+        )
+    return interval_hint(given, [won(*question) for question in questions])
 
-    def share_is(rule: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> bool:
-        return bool(np.allclose(given[:, 0], [rule(*question).mean() for question in questions], atol=1e-9))
 
-    if not share_is(won):
-        for mistake, hint in SHARE_MISTAKES:
-            if share_is(mistake):
-                return hint
-        ours, theirs = questions[0]
-        right_share = won(ours, theirs).mean()
-        return f"For the first of our questions your share is {given[0, 0]:.4f}; it should be {right_share:.4f}."
+def interval_hint(given: np.ndarray, wins: list[np.ndarray]) -> str:
+    """What is wrong with the interval where the share is right."""
     if (given[:, 1] > given[:, 2]).any():
         return "The lower end of your interval is above the upper one."
-    right = np.array([interval(won(*question), maps=True) for question in questions])
+    right = np.array([interval(runs, maps=True) for runs in wins])
     ratio = np.mean((given[:, 2] - given[:, 1]) / (right[:, 1] - right[:, 0]))
     if 0.94 < ratio < 1.06:
         if np.allclose(given[:, 1:], right, atol=0.06):
             return ""
         return "Your interval is as wide as it should be, but lies elsewhere. Which quantiles are its two ends?"
-    of_runs = np.array([interval(won(*question), maps=False) for question in questions])
+    of_runs = np.array([interval(runs, maps=False) for runs in wins])
     narrow = np.mean((of_runs[:, 1] - of_runs[:, 0]) / (right[:, 1] - right[:, 0]))
     if abs(ratio - narrow) < 0.04:
         return (
@@ -304,7 +297,7 @@ def exercise_3(share_of_wins: Callable[..., Any]) -> str:
             "on one map tell about one map. What has to be drawn, runs or maps?"
         )
     for level, ends in ((0.9, "5 % and 95 %"), (0.6827, "about 16 % and 84 %")):
-        other = np.array([interval(won(*question), maps=True, level=level) for question in questions])
+        other = np.array([interval(runs, maps=True, level=level) for runs in wins])
         if abs(ratio - np.mean((other[:, 1] - other[:, 0]) / (right[:, 1] - right[:, 0]))) < 0.04:
             return f"Your ends are the quantiles of {ends}. How much may lie below and above an interval of 95 %?"
     if (given[:, 1] == given[:, 2]).all():
@@ -332,25 +325,24 @@ def won(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
     return np.where(ours == theirs, 0.5, ours < theirs)
 
 
-def finite_won(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
-    return won(ours, theirs)[np.isfinite(ours) & np.isfinite(theirs)]
-
-
-SHARE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], str]] = [
-    (lambda ours, theirs: 1 - won(ours, theirs), "That is how often the other one wins: the smaller gap is better."),
-    (lambda ours, theirs: ours < theirs, "You count ties as lost. What counts a tie?"),
-    (lambda ours, theirs: ours <= theirs, "You count ties as won. What counts a tie?"),
-    (lambda ours, theirs: 100 * won(ours, theirs), "That is in per cent. A share lies between 0 and 1."),
+SHARE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], Any], str]] = [
     (
-        lambda ours, theirs: won(np.median(ours, axis=1), np.median(theirs, axis=1)),
+        lambda ours, theirs: (1 - won(ours, theirs)).mean(),
+        "That is how often the other one wins: the smaller gap is better.",
+    ),
+    (lambda ours, theirs: (ours < theirs).mean(), "You count ties as lost. What counts a tie?"),
+    (lambda ours, theirs: (ours <= theirs).mean(), "You count ties as won. What counts a tie?"),
+    (lambda ours, theirs: (100 * won(ours, theirs)).mean(), "That is in per cent. A share lies between 0 and 1."),
+    (
+        lambda ours, theirs: won(np.median(ours, axis=1), np.median(theirs, axis=1)).mean(),
         "You compare the medians of each map. The question is about runs: each seed against the same seed.",
     ),
     (
-        lambda ours, theirs: (ours < theirs)[ours != theirs],
+        lambda ours, theirs: (ours < theirs)[ours != theirs].mean(),
         "You leave the ties out. Each run counts, a tie half.",
     ),
     (
-        finite_won,
+        lambda ours, theirs: won(ours, theirs)[np.isfinite(ours) & np.isfinite(theirs)].mean(),
         "You leave out runs that didn't arrive. Who doesn't arrive has lost against one who does.",
     ),
 ]

@@ -4,13 +4,18 @@ A hint says which mistake the answers look like and why it is one. Mistakes are 
 by how they are written.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from uavlab.exercises import NOTHING
+from uavlab.exercises.hints import NOTHING, alike, each_alike, recognised
 from uavlab.spline import cubic_bspline
+
+same = partial(each_alike, same=partial(alike, relative=1e-7, absolute=1e-9))
 
 
 def answers_to(
@@ -32,10 +37,6 @@ def answers_to(
     return given, ""
 
 
-def alike(given: list[np.ndarray], wanted: list[np.ndarray]) -> bool:
-    return all(np.allclose(a, b, rtol=1e-7, atol=1e-9) for a, b in zip(given, wanted, strict=True))
-
-
 def exercise_1(curvature: Callable[..., Any]) -> str:
     """11.1: the curvature of a curve in space, by any parameter."""
     rng = np.random.default_rng(1110)
@@ -43,12 +44,9 @@ def exercise_1(curvature: Callable[..., Any]) -> str:
     given, hint = answers_to(curvature, questions, [(6,)] * 3, "The curvature")
     if hint:
         return hint
-    if alike(given, [bent(*question) for question in questions]):
+    if same(given, [bent(*question) for question in questions]):
         return ""
-    for how, mistaken in CURVATURE_MISTAKES:
-        if alike(given, [how(*question) for question in questions]):
-            return mistaken
-    return (
+    return recognised(given, CURVATURE_MISTAKES, questions, same) or (
         "Try it on a circle of radius 5, r = 5·(cos t, sin t, 0): your answer must be 0.2 everywhere, also when t runs "
         f"twice as fast. For first = {np.round(questions[0][0][0], 2)} and second = {np.round(questions[0][1][0], 2)} "
         f"yours is {given[0][0]:.4f}."
@@ -117,11 +115,10 @@ def exercise_2(control_points: Callable[..., Any]) -> str:
         return hint
     waypoints = [question[0] for question in questions]
     knots = [cubic_bspline(points, per_segment=1) for points in given]
-    if alike(knots, waypoints):
+    if same(knots, waypoints):
         return ""
-    for how, mistaken in CONTROL_MISTAKES:
-        if alike(given, [how(points) for points in waypoints]):
-            return mistaken
+    if hint := recognised(given, CONTROL_MISTAKES, questions, same):
+        return hint
     if all(np.allclose(k[1:-1], w[1:-1]) for k, w in zip(knots, waypoints, strict=True)):
         return (
             "In between your curve passes through the waypoints, but it doesn't begin or end where it should. "
@@ -190,12 +187,9 @@ def exercise_3(speeds: Callable[..., Any]) -> str:
     given, hint = answers_to(speeds, questions, [question[0].shape for question in questions], "The answer")
     if hint:
         return hint
-    if alike(given, [driven(*question) for question in questions]):
+    if same(given, [driven(*question) for question in questions]):
         return ""
-    for how, mistaken in SPEED_MISTAKES:
-        if alike(given, [driven(*question, **how) for question in questions]):
-            return mistaken
-    return wrong_somewhere(given, questions)
+    return recognised(given, SPEED_MISTAKES, questions, same) or wrong_somewhere(given, questions)
 
 
 def wrong_somewhere(given: list[np.ndarray], questions: list[tuple[Any, ...]]) -> str:
@@ -259,22 +253,25 @@ def driven(
     return np.asarray(speed ** (1 / power))
 
 
-SPEED_MISTAKES: list[tuple[dict[str, Any], str]] = [
+SPEED_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
     (
-        {"backward": False},
+        partial(driven, backward=False),
         "Your UAV accelerates well and never brakes: before a bend its speed falls at once. Braking, seen backwards, "
         "is what?",
     ),
-    ({"forward": False}, "Your UAV brakes in time, but after a bend it has its full speed at once."),
-    ({"forward": False, "backward": False}, "That is the speed allowed at each point: it jumps, where the UAV can't."),
-    ({"rest": False}, "The UAV begins and ends at rest."),
-    ({"twice": 1.0}, "Your UAV accelerates with half of what it may. Look at v₂² − v₁² once more."),
+    (partial(driven, forward=False), "Your UAV brakes in time, but after a bend it has its full speed at once."),
     (
-        {"linear": True, "twice": 1.0},
+        partial(driven, forward=False, backward=False),
+        "That is the speed allowed at each point: it jumps, where the UAV can't.",
+    ),
+    (partial(driven, rest=False), "The UAV begins and ends at rest."),
+    (partial(driven, twice=1.0), "Your UAV accelerates with half of what it may. Look at v₂² − v₁² once more."),
+    (
+        partial(driven, linear=True, twice=1.0),
         "You add a·s to the speed. That is metres per second times metres per second: what grows by 2as?",
     ),
     (
-        {"linear": True},
+        partial(driven, linear=True),
         "You add 2as to the speed itself. What is it that grows by 2as?",
     ),
 ]

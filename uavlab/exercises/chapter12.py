@@ -4,13 +4,16 @@ A hint says which mistake the answers look like and why it is one. Mistakes are 
 by how they are written.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from scipy.stats import beta, norm
 
-from uavlab.exercises import NOTHING
+from uavlab.exercises.hints import NOTHING, alike, each_alike, recognised
 from uavlab.vehicle import GRAVITY
 from uavlab.weather.forces import STANDARD_AIR
 
@@ -34,15 +37,10 @@ def exercise_1(acceleration: Acceleration) -> str:
     for answer in answers:
         if np.shape(answer) != (3,):
             return f"The acceleration is a vector of three numbers; yours has shape {np.shape(answer)}."
-
-    def as_by(formula: Acceleration) -> bool:
-        return all(np.allclose(answer, formula(*case), rtol=1e-6) for answer, case in zip(answers, FLOWN, strict=True))
-
-    if as_by(right_acceleration):
+    if each_alike(answers, [right_acceleration(*case) for case in FLOWN]):
         return ""
-    for formula, hint in ACCELERATIONS:
-        if as_by(formula):
-            return hint
+    if hint := recognised(answers, ACCELERATIONS, FLOWN, each_alike):
+        return hint
     still = FLOWN[0][2]
     alone = np.asarray(acceleration(np.zeros(3), still, still.copy(), 1.0, 0.06))
     if not np.allclose(alone, -DOWN):
@@ -127,16 +125,13 @@ def exercise_2(interval: Interval) -> str:
     if any(np.shape(answer) != (2,) for answer in answers):
         return "The answer is two numbers, (low, high)."
     ends = np.array(answers, dtype=float)
-
-    def as_by(formula: Interval, which: slice = slice(None)) -> bool:
-        wanted = np.array([formula(*trial) for trial in TRIALS], dtype=float)
-        return np.allclose(ends[which], wanted[which], rtol=1e-6, atol=1e-12)
-
-    if as_by(right_interval):
+    wanted = np.array([right_interval(*trial) for trial in TRIALS])
+    same = partial(alike, absolute=1e-12)
+    if same(ends, wanted):
         return ""
-    if np.allclose(ends, [[1000 * end for end in right_interval(*trial)] for trial in TRIALS]):
+    if np.allclose(ends, 1000 * wanted):
         return "That is per 1 000. Asked for is a probability."
-    if as_by(lambda k, n: right_interval(k, n)[::-1]):
+    if same(ends, wanted[:, ::-1]):
         return "Your lower end is the upper one."
     if np.isnan(ends).any():
         crashed, flights = TRIALS[int(np.isnan(ends).any(axis=1).argmax())]
@@ -144,10 +139,11 @@ def exercise_2(interval: Interval) -> str:
             f"For {crashed} crashes of {flights} one end is NaN: a beta distribution has no parameter of 0. Which end "
             "needs no computing there?"
         )
-    for formula, hint in INTERVALS:
-        if as_by(formula):
-            return hint
-    wanted = np.array([right_interval(*trial) for trial in TRIALS])
+    return recognised(ends, INTERVALS, TRIALS, same) or half_right(ends, wanted)
+
+
+def half_right(ends: np.ndarray, wanted: np.ndarray) -> str:
+    """A hint by what is right, one end or the trials in which some crashed and some didn't."""
     inner = slice(1, 3)  # neither none nor all crashed
     for column, name, other in ((0, "lower", "upper"), (1, "upper", "lower")):
         if np.allclose(ends[inner, column], wanted[inner, column]) and not np.allclose(
@@ -218,13 +214,9 @@ def exercise_3(distance: Distance) -> str:
     answers = [distance(*wall) for wall in WALLS]
     if any(answer is None for answer in answers):
         return NOTHING
-
-    def as_by(formula: Distance) -> bool:
-        wanted = [formula(*wall) for wall in WALLS]
-        return np.allclose(answers, wanted, rtol=1e-5)
-
+    same = partial(alike, relative=1e-5)
     touching = [right_distance(sigma, seconds, -math.log1p(-p), r) for sigma, seconds, p, r in WALLS]
-    if as_by(right_distance) or np.allclose(answers, touching, rtol=1e-5):
+    if same(answers, [right_distance(*wall) for wall in WALLS]) or same(answers, touching):
         easy = distance(*EASY)
         if np.isclose(easy, EASY[3]):
             return ""
@@ -233,9 +225,8 @@ def exercise_3(distance: Distance) -> str:
             f"{easy:.3g} m: {EASY[1] / (2 * math.pi):.2f} touches are to be expected with no margin at all, and the "
             f"body has a radius of {EASY[3]:g} m."
         )
-    for formula, hint in DISTANCES:
-        if as_by(formula):
-            return hint
+    if hint := recognised(answers, DISTANCES, WALLS, same):
+        return hint
     sigma, seconds, allowed, radius = WALLS[0]
     margin = float(answers[0]) - radius
     expected = seconds / (2 * math.pi) * math.exp(-0.5 * (margin / sigma) ** 2)
