@@ -14,7 +14,7 @@ import pytest
 from uavlab import plot
 from uavlab.__main__ import main
 from uavlab.flight import Flights
-from uavlab.report import Conditions, Trial, trial_table
+from uavlab.report import Premises, Trial, trial_table
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Wind
 from uavlab.whole_way import free_memory, tell
@@ -332,7 +332,7 @@ def test_energy_is_in_watt_hours_and_offsets_across_come_before_those_up():
     offsets[..., 1:] = np.random.default_rng(0).normal(0, (3.0, 0.5), (2, 400, 2))
     ones = np.ones(2)
     flights = Flights(np.array(["arrived"] * 2), 30 * ones, 4 * ones, 7200 * ones, np.zeros((2, 3)), offsets)
-    conditions = Conditions(LIGHT_QUADROTOR, Wind((6.0, 0.0)), 10.0, 1.0, 3.5, "")
+    conditions = Premises(LIGHT_QUADROTOR, Wind((6.0, 0.0)), 10.0, 1.0, 3.5, "")
     rows = dict(trial_table(Trial("", flights=flights, as_planned=flights), conditions))
     assert rows["energy"] == "2.00 Wh from the battery, 2% of it"
     across, up = map(float, re.findall(r"[\d.]+(?= m)", rows["offsets in these gusts"]))
@@ -358,7 +358,7 @@ def test_ctrl_c_ends_in_one_line_and_leaves_no_page(tmp_path, capsys, monkeypatc
 
 
 def test_too_little_memory_is_said_before_and_if_it_runs_out(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("uavlab.__main__.free_memory", lambda: 1e6)
+    monkeypatch.setattr("uavlab.whole_way.free_memory", lambda: 1e6)
     assert main(["--out", str(tmp_path / "route.html")]) == 2
     assert (
         "a map of 1,000,000 voxels needs about 0.1 GB of memory to plan on, 0.0 GB are free: take a larger --cell"

@@ -12,6 +12,8 @@ from uavlab.flight import Flight, OffsetProcess, Rate, fly
 from uavlab.flight.motion import COLUMNS
 from uavlab.offsets import safety_domain
 from uavlab.planners import Comparison, astar, least_risk, pareto_front, potential_field, potential_forces
+from uavlab.plot.flights import track
+from uavlab.plot.stills import subdivided, voxel_surface
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
 from uavlab.route import Route
 from uavlab.spline import Curve
@@ -198,7 +200,7 @@ def test_route_that_did_not_arrive_is_named_and_not_drawn(table1):
 def test_voxel_surface_encloses_the_occupied_volume():
     occupied = np.random.default_rng(1).random((6, 7, 5)) < 0.4
     origin = np.array([3.0, -2.0, 1.0])
-    triangles = plot.voxel_surface(City(occupied, cell=2.0, origin=origin)) - origin
+    triangles = voxel_surface(City(occupied, cell=2.0, origin=origin)) - origin
     volume = np.einsum("ij,ij->i", triangles[:, 0], np.cross(triangles[:, 1], triangles[:, 2])).sum() / 6
     assert volume == pytest.approx(8 * occupied.sum())
 
@@ -209,7 +211,7 @@ def test_subdivided_triangles_keep_their_area():
     def area(t):
         return np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1).sum()
 
-    pieces = plot.subdivided(triangles, 3.0)
+    pieces = subdivided(triangles, 3.0)
     assert area(pieces) == pytest.approx(area(triangles))
     assert np.linalg.norm(np.roll(pieces, -1, axis=1) - pieces, axis=2).max() <= 3.0
 
@@ -405,7 +407,7 @@ def test_tracks_has_a_panel_for_each_name_and_a_cross_where_each_flight_crashed(
     crosses = next(line for line in astar_axes.lines if line.get_marker() == "x")
     assert np.allclose(crosses.get_xydata(), [flight.position[-1, :2] for flight in crashed])
     drawn = [line.get_xydata() for line in astar_axes.lines]
-    assert any(np.array_equal(line, plot.track(flights_of_astar[0])[1][:, :2]) for line in drawn)
+    assert any(np.array_equal(line, track(flights_of_astar[0])[1][:, :2]) for line in drawn)
     assert any(np.array_equal(line, route.points[:, :2]) for line in drawn)
     assert (astar_axes.get_aspect(), astar_axes.get_xlim(), astar_axes.get_ylim()) == (1.0, (40, 100), (5, 65))
     assert astar_axes.get_xlabel() == "x, east [m]"
@@ -414,7 +416,7 @@ def test_tracks_has_a_panel_for_each_name_and_a_cross_where_each_flight_crashed(
 
 
 def test_track_keeps_every_fifth_of_a_second_and_the_end():
-    time, places = plot.track(straight_flight(seconds=1.06))
+    time, places = track(straight_flight(seconds=1.06))
     assert time == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.06])
     assert places[:, 0] == pytest.approx(5 * time)
 

@@ -11,6 +11,8 @@ from uavlab.city import Building, City, NoFlyZone, Terrain
 from uavlab.flight import OffsetProcess, fly
 from uavlab.planners import astar
 from uavlab.plot import ground
+from uavlab.plot.ground import CUT_COLOR, ground_lattice, height_label, height_words, zone_label, zone_surface
+from uavlab.plot.stills import layer_triangles, voxel_surface
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 from uavlab.spline import Curve
@@ -46,7 +48,7 @@ def legend_of(figure):
 def brown(axes):
     """What the image of the cut ground shows, (nx, ny) bool; None if there is none."""
     for image in axes.images:
-        if image.cmap.N == 1 and np.allclose(image.cmap(0)[:3], to_rgb(plot.CUT_COLOR)):
+        if image.cmap.N == 1 and np.allclose(image.cmap(0)[:3], to_rgb(CUT_COLOR)):
             return ~np.ma.getmaskarray(image.get_array()).T
     return None
 
@@ -73,8 +75,8 @@ def test_ground_of_a_city_that_knows_no_buildings_is_cut_where_it_reaches(hill):
     assert np.array_equal(ground.cut_ground(alone, 6), alone.occupied[:, :, 6] & (hill.range_of_ground[1] > 20.0))
     assert not ground.built_columns(alone)[:, 0].any()
     assert ground.built_columns(alone)[5:8, 13:17].all()
-    assert plot.voxel_surface(alone)[..., 2].min() >= 0.0  # the ground has a mesh of its own
-    assert np.ptp(plot.voxel_surface(alone)[..., 0]) < 120
+    assert voxel_surface(alone)[..., 2].min() >= 0.0  # the ground has a mesh of its own
+    assert np.ptp(voxel_surface(alone)[..., 0]) < 120
 
 
 @pytest.mark.parametrize(
@@ -86,8 +88,8 @@ def test_ground_of_a_city_that_knows_no_buildings_is_cut_where_it_reaches(hill):
     ],
 )
 def test_heights_over_uneven_ground_are_z_with_what_is_below(hill, height, words):
-    assert plot.height_words(hill, height) == words
-    assert plot.height_label(hill) == "height z [m]\n(ground at z = 0 to 35 m)"
+    assert height_words(hill, height) == words
+    assert height_label(hill) == "height z [m]\n(ground at z = 0 to 35 m)"
 
 
 def test_heights_over_level_ground_are_counted_from_it():
@@ -184,7 +186,7 @@ def test_what_a_zone_closes_is_not_called_too_low(hill):
     ],
 )
 def test_zones_have_one_entry_in_a_legend(names, label):
-    assert plot.zone_label([NoFlyZone(SCHOOL.outline, name=name) for name in names]) == label
+    assert zone_label([NoFlyZone(SCHOOL.outline, name=name) for name in names]) == label
 
 
 def volume_of(triangles):
@@ -199,7 +201,7 @@ def test_zone_is_a_prism_without_walls_inside_cut_off_at_the_map():
     courtyard = [(20, 20), (30, 20), (30, 30), (20, 30)]
     corner = NoFlyZone([(-50, -50), (40, -50), (40, 40), (-50, 40)], 5.0, holes=(courtyard,))
     city = City(np.zeros((50, 50, 20), dtype=bool), 2.0, origin=(0, 0, 10), no_fly=(corner,))
-    triangles, edges = plot.zone_surface(city)
+    triangles, edges = zone_surface(city)
     assert triangles.min(axis=(0, 1)) == pytest.approx([0, 0, 15])
     assert triangles.max(axis=(0, 1)) == pytest.approx([40, 40, 50])  # an infinite limit ends at the map's top
     assert volume_of(triangles) == pytest.approx((40 * 40 - 10 * 10) * 35)
@@ -214,27 +216,27 @@ def test_zone_beside_the_map_is_not_named():
     away = NoFlyZone([(500, 500), (600, 500), (600, 600)], name="away")
     city = City(np.zeros((9, 9, 9), dtype=bool), 2.0, no_fly=(away,))
     assert not plot.plan(city).legends
-    assert len(plot.zone_surface(city)[0]) == 0
+    assert len(zone_surface(city)[0]) == 0
     assert plot.still(city).axes[0].get_legend() is None
 
 
 def test_lattice_has_the_heights_of_the_ground_at_the_columns_corners(hill):
-    lattice = plot.ground_lattice(hill)
+    lattice = ground_lattice(hill)
     assert lattice.shape == (51, 31, 3)
     inner = (hill.ground[:-1, :-1] + hill.ground[1:, :-1] + hill.ground[:-1, 1:] + hill.ground[1:, 1:]) / 4
     assert np.allclose(lattice[1:-1, 1:-1, 2], inner)
     assert np.allclose(lattice[3, 7, :2], (12, 28))
-    thin = plot.ground_lattice(hill, 10)
+    thin = ground_lattice(hill, 10)
     assert thin.shape == (11, 11, 3)
     assert np.allclose(hill.height_above_ground(thin), 0.0)
 
 
 def test_layers_lie_on_the_ground_when_they_get_its_heights(hill):
-    heights = plot.ground_lattice(hill, 50)[..., 2]
-    layer = plot.layer_triangles(hill, heights)
+    heights = ground_lattice(hill, 50)[..., 2]
+    layer = layer_triangles(hill, heights)
     assert layer.shape == (50 * 30, 2, 3, 3)
     assert np.allclose(hill.height_above_ground(layer), 0.0)
-    assert np.array_equal(layer[..., :2], plot.layer_triangles(hill, 7)[..., :2])
+    assert np.array_equal(layer[..., :2], layer_triangles(hill, 7)[..., :2])
     normals = np.cross(layer[..., 1, :] - layer[..., 0, :], layer[..., 2, :] - layer[..., 0, :])
     assert (normals[..., 2] > 0).all()
 

@@ -12,6 +12,7 @@ from uavlab import plot, scene
 from uavlab.city import Building, City, NoFlyZone
 from uavlab.flight import OffsetProcess, fly
 from uavlab.planners import astar, repare, shortcut
+from uavlab.plot.ground import MOST_QUADS, ZONE_COLOR
 from uavlab.risk import RiskMap, reference_campus
 from uavlab.route import Route
 from uavlab.scene.animation import FLIGHT_SECONDS, FRAMES_PER_SECOND, LAST_FRAME
@@ -271,7 +272,7 @@ def test_large_ground_is_thinned_out():
     ground = np.random.default_rng(1).uniform(0, 20, (500, 300))
     city = City(np.zeros((500, 300, 30), dtype=bool), 1.0, ground=ground)
     page = scene.page(city)
-    assert len(vertices_of(commands_of(page)["/meshcat/ground", "set_object"])) == (plot.MOST_QUADS + 1) ** 2
+    assert len(vertices_of(commands_of(page)["/meshcat/ground", "set_object"])) == (MOST_QUADS + 1) ** 2
     assert len(page) < 650_000
 
 
@@ -295,7 +296,7 @@ def test_no_fly_zones_are_one_mesh_to_look_through_and_one_line_of_the_legend(hi
     assert vertices.min(axis=0)[:2] == pytest.approx([20, 20])
     assert vertices.max(axis=0) == pytest.approx([90, 60, 60])  # the church's zone has no upper limit
     assert page.count("no-fly zones: &lt;school&gt;, church") == 1
-    assert plot.ZONE_COLOR not in plot.route_colors(6)
+    assert ZONE_COLOR not in plot.route_colors(6)
     assert "no-fly" not in scene.page(City(hill.occupied, 4.0))
 
 

@@ -152,6 +152,7 @@ MAKERS = {
     "Route": "planners give one, Route(points) makes one; several are given one by one, as in *routes",
     "Curve": "smooth(route, city, uav) makes one",
     "UAV": "uavlab.vehicle has some",
+    "Wind": "Wind(mean=(east, north)) is one, and so is a Weather",
 }
 
 

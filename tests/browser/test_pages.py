@@ -10,6 +10,8 @@ from pictures import shades_of_hue, share_of_hue
 from uavlab import plot, scene
 from uavlab.city import City, NoFlyZone, table1_city
 from uavlab.planners import astar
+from uavlab.plot.ground import ZONE_COLOR
+from uavlab.plot.style import sequential_color
 from uavlab.scene.animation import EXPANSION_BATCHES
 
 
@@ -74,7 +76,7 @@ def test_expansion_appears_in_its_order(page, tmp_path, picture_of):
         assert len(counts) < 300
         page.wait_for_timeout(200)
     assert counts[0] < counts[-1]
-    assert share_of_hue(picture_of(page), plot.sequential_color(0.0), saturation=0.5) > 0.001
+    assert share_of_hue(picture_of(page), sequential_color(0.0), saturation=0.5) > 0.001
 
 
 def test_city_without_buildings_is_drawn_from_its_voxels(page, tmp_path, picture_of):
@@ -95,7 +97,7 @@ def test_hill_and_no_fly_zone_are_seen(page, tmp_path, picture_of):
     page.goto(path.as_uri())
     wait_until_drawn(page)
     picture = picture_of(page)
-    assert share_of_hue(picture, plot.ZONE_COLOR) > 0.01
+    assert share_of_hue(picture, ZONE_COLOR) > 0.01
     middle = picture[200:560, 250:800]  # the ground: grey, its slopes in light and in shade
     grey = middle[np.ptp(middle, axis=-1) < 0.08].mean(axis=-1)
     assert np.quantile(grey, 0.95) - np.quantile(grey, 0.05) > 0.15

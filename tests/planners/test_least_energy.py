@@ -52,7 +52,7 @@ def graph_of(city, uav, wind, **options):
 def test_the_energy_is_that_of_dijkstra_on_an_independent_graph(seed, uav, wind):
     city = town(seed)
     nodes = [np.ravel_multi_index(index, city.shape) for index in ((0, 0, 0), (10, 9, 6), (0, 9, 2))]
-    least = dijkstra(graph_of(city, uav, Wind(wind), speed=9.0), indices=nodes)
+    least = dijkstra(graph_of(city, uav, wind, speed=9.0), indices=nodes)
     for (one, a), (other, b) in product(enumerate(nodes), repeat=2):
         if one == other:
             continue

@@ -487,7 +487,7 @@ def test_bad_fields_are_refused_with_the_reason(wrong, message):
     [
         (
             lambda: potential_field(SMALL, *ENDS, moves="diagonal"),
-            "moves must be 'lattice' or 'continuous', got 'diagonal'",
+            "moves must be one of 'lattice', 'continuous', got 'diagonal'",
         ),
         (lambda: potential_field(SMALL, *ENDS, step=0.0), "step must be finite and above 0, got 0"),
         (lambda: potential_field(SMALL, *ENDS, step=np.nan), "step must be finite and above 0, got nan"),

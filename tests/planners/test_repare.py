@@ -472,7 +472,7 @@ WEAK = UAV(**(vars(LIGHT_QUADROTOR) | {"thrust": 20.0}))
         ({"disturbance": 6.0}, r"disturbance must be one of .* got 6\.0"),
         ({"disturbance": None}, "disturbance must be one of .* got None"),
         ({"load": -1.0}, "load must be finite and at least 0, got -1"),
-        ({"load": 3.0}, "payload must be at most 1 kg, the heaviest class, got 3"),
+        ({"load": 1.2}, "payload must be at most 1 kg, the heaviest class, got 1.2"),
         ({"load": "heavy", "uav": WEAK}, r"thrust 20 N can't lift 1\.5 kg \+ payload 1 kg"),
         ({"reading": "tea leaves"}, "reading must be one of 'table', 'physical'"),
         ({"mean_offset": 1.0}, "mean_offset must be two or three finite numbers"),

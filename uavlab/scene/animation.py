@@ -14,8 +14,7 @@ from uavlab.flight import Flight
 from uavlab.plot.flights import cross, track
 from uavlab.plot.style import CRASH_COLOR, sequential_color
 from uavlab.route import Route
-from uavlab.scene.shapes import as_number, draw_goal, draw_uav, draw_way, mesh, tube, tube_radius
-from uavlab.scene.stage import nearby
+from uavlab.scene.shapes import as_number, draw_goal, draw_uav, draw_way, mesh, nearby, tube, tube_radius
 
 FRAMES_PER_SECOND = 30
 FLIGHT_SECONDS = 12.0

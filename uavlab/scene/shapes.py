@@ -11,7 +11,14 @@ from meshcat.transformations import translation_matrix
 
 from uavlab.city import City
 from uavlab.route import Route
-from uavlab.scene.stage import nearby
+
+FAR_OFF = 1000.0
+"""Scenes lie about the multiple of this that is next to their map's centre [m]: viewers count in float32."""
+
+
+def nearby(city: City, points: np.ndarray) -> np.ndarray:
+    """Points (..., 3) [m] of a map that may lie far off, such as in UTM, from a multiple of a kilometre near it."""
+    return points - FAR_OFF * np.round(city.bounds.mean(axis=0) / FAR_OFF)
 
 
 def draw_route(scene: meshcat.Visualizer, city: City, route: Route, color: str, *, thin: bool = False) -> None:

@@ -23,16 +23,9 @@ from uavlab.plot.maps import ground_risk, risk_norm
 from uavlab.plot.stills import layer_triangles, voxel_surface
 from uavlab.plot.style import SEQUENTIAL, level_of
 from uavlab.risk import RiskMap
-from uavlab.scene.shapes import as_number, draw_lines, mesh
+from uavlab.scene.shapes import as_number, draw_lines, mesh, nearby
 
 FIELD_OF_VIEW_DEG = 40.0
-FAR_OFF = 1000.0
-"""Scenes lie about the multiple of this that is next to their map's centre [m]: viewers count in float32."""
-
-
-def nearby(city: City, points: np.ndarray) -> np.ndarray:
-    """Points (..., 3) [m] of a map that may lie far off, such as in UTM, from a multiple of a kilometre near it."""
-    return points - FAR_OFF * np.round(city.bounds.mean(axis=0) / FAR_OFF)
 
 
 def set_stage(scene: meshcat.Visualizer, city: City, *, painted: bool = False) -> None:
