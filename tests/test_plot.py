@@ -9,7 +9,7 @@ from matplotlib.quiver import Quiver
 from uavlab import plot, scene
 from uavlab.city import City
 from uavlab.flight import Flight, OffsetProcess, Rate, fly
-from uavlab.flight.motion import COLUMNS
+from uavlab.flight.state import COLUMNS
 from uavlab.offsets import safety_domain
 from uavlab.planners import Comparison, astar, least_risk, pareto_front, potential_field, potential_forces
 from uavlab.plot.flights import track
@@ -488,7 +488,7 @@ def test_still_has_tracks_and_a_cross_where_one_crashed(table1, route, flights_o
         (lambda city, route: plot.tracks(city, {}), "flights is empty: give at least one name"),
         (lambda city, route: plot.tracks(city, {"A*": [route]}), "flights must be a Flight, got Route"),
         (lambda city, route: plot.tracks(city, {"A*": straight_flight()}), "flights must be a list of Flight"),
-        (lambda city, route: plot.tracks(city, {}, {"A*": city}), "routes must be a Route, got City"),
+        (lambda city, route: plot.tracks(city, {}, {"A*": city}), r"routes\['A\*'\] must be a Route, got City"),
         (lambda city, route: plot.crash_rates({}), "rates must hold one to 6 planners, got 0"),
         (lambda city, route: plot.crash_rates({"calm": {"A*": Rate(1, 0, 2)}}, least=0.0), "least must be"),
         (lambda city, route: plot.in_flight({}), "flights must hold one to 6 that flew, got 0"),

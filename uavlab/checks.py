@@ -149,7 +149,7 @@ MAKERS = {
     "RiskMap": "RiskMap(city, population_density, shelter) makes one",
     "Terrain": "Terrain.from_raster(heights, bounds) makes one, read_terrain(path) reads one",
     "NoFlyZone": "NoFlyZone(outline, lower, upper) makes one",
-    "Route": "planners give one, Route(points) makes one; several are given one by one, as in *routes",
+    "Route": "planners give one, Route(points) makes one; several are given one by one, as in *routes, or by name",
     "Curve": "smooth(route, city, uav) makes one",
     "UAV": "uavlab.vehicle has some",
     "Wind": "Wind(mean=(east, north)) is one, and so is a Weather",

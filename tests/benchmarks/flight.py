@@ -19,8 +19,10 @@ from scipy.signal import lfilter
 
 from uavlab.city import City, table1_city
 from uavlab.flight import PERFECT_GPS, Autopilot, Gps, monte_carlo
-from uavlab.flight.motion import PREVIEW, advance, velocity_at
+from uavlab.flight.motion import PREVIEW
+from uavlab.flight.reference import advance, velocity_at
 from uavlab.flight.simulation import TIME_STEP, setup_of, start_of
+from uavlab.flight.state import Course
 from uavlab.planners import astar, repare
 from uavlab.resilience import Controller
 from uavlab.route import Route
@@ -212,7 +214,7 @@ def point_mass(
     for velocity in sky.air:
         model.parts[1].mean[:] = velocity  # the air moves so in this step; the trim stays that of the mean wind
         state.counts[1] = 0
-        model.run(path, setup.space, state, TIME_STEP, 1, 1, rng, log)
+        model.run(Course(path, setup.obstacles, TIME_STEP), state, 1, 1, rng, log)
         flight.append(log[0, 1:4].copy())
     return np.array(flight)
 

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 
 from uavlab.flight import OffsetProcess, fly, offset_sigma
 from uavlab.flight.models import air_of, passing_speed
-from uavlab.flight.motion import blow
+from uavlab.flight.motion import next_gust
 from uavlab.flight.path import planned_speed
 from uavlab.flight.simulation import setup_of, start_of
 from uavlab.resilience import ADVANCED, BASIC, Controller
@@ -30,7 +30,7 @@ NAN = float("nan")
 def blown(air, state, steps, rng, gusts):
     """Gusts of so many steps, again and again from the start until the array is full."""
     for row in range(len(gusts)):
-        blow(air, state, row % steps, rng)
+        next_gust(air, state, row % steps, rng)
         gusts[row] = state.gust
 
 

@@ -9,7 +9,8 @@ from places import EXACT, SKY, beside_wall, straight
 
 from uavlab.city import City
 from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, fly, monte_carlo, offset_sigma
-from uavlab.flight.motion import LEASH, LEAST_THRUST
+from uavlab.flight.motion import LEAST_THRUST
+from uavlab.flight.reference import LEASH
 from uavlab.power import power_needed
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route

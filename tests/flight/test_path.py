@@ -8,8 +8,8 @@ from places import EXACT, SKY, straight
 from scipy.spatial.transform import Rotation
 
 from uavlab.flight import OffsetProcess, fly, monte_carlo
-from uavlab.flight.motion import speed_at, steps_to_goal
 from uavlab.flight.path import BANK, BRAKING, TURN_JUMP, level_thrust, planned_speed
+from uavlab.flight.reference import speed_at, steps_to_goal
 from uavlab.flight.simulation import setup_of
 from uavlab.resilience import ADVANCED, Controller
 from uavlab.route import Route

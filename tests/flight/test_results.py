@@ -8,7 +8,7 @@ from places import EXACT, SKY, beside_wall, straight
 from scipy.stats import binomtest
 
 from uavlab.flight import Flight, Flights, OffsetProcess, Rate, crash_rate, fly, monte_carlo
-from uavlab.flight.motion import COLUMNS
+from uavlab.flight.state import COLUMNS
 from uavlab.resilience import ConditionCheck, Monitor
 from uavlab.route import Route
 from uavlab.vehicle import LIGHT_QUADROTOR

@@ -9,7 +9,7 @@ from places import EXACT, SKY, beside_wall, standard_errors_apart, straight
 
 from uavlab.city import City
 from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, crash_rate, fly, monte_carlo
-from uavlab.flight.simulation import room, setup_of, start_of
+from uavlab.flight.simulation import route_clearance, setup_of, start_of
 from uavlab.offsets import collision_probability, offset_paths, safety_domain
 from uavlab.planners import astar, hazard_astar, repare
 from uavlab.resilience import ADVANCED, BASIC, ConditionCheck, Controller, Monitor, safe_distance
@@ -426,7 +426,7 @@ def counting(**options):
         (flying(city=reference_campus()), r"city must be a City, got RiskMap"),
         (flying(uav="quadrotor"), r"uav must be a UAV, got str"),
         (flying(autopilot=ADVANCED), r"autopilot must be an Autopilot, got Controller: Autopilot\(\) is the usual one"),
-        (flying(disturbance=3.0), r"disturbance must be a Wind or an OffsetProcess, or return one, got float"),
+        (flying(disturbance=3.0), r"disturbance must be a Wind, a Weather or an OffsetProcess, or return one, got float"),
         (flying(disturbance=lambda time: None), r"disturbance must be a Wind .* got NoneType"),
         (flying(disturbance=lambda time: SWAY if time < 2 else 1.0), r"disturbance must be a Wind .* got float"),
         (
@@ -442,11 +442,11 @@ def counting(**options):
         (flying(time_step=0), r"time_step must be finite and above 0, got 0"),
         (
             flying(time_step=0.21),
-            r"time_step must be at most 0.2 s for a controller with ω_n = 1 rad/s, got 0.21",
+            r"time_step must be at most 0.2 s, for a controller with ω_n = 1 rad/s, got 0.21",
         ),
         (
             flying(time_step=0.13, autopilot=watching()),
-            r"time_step must be at most 0.125 s for a controller with ω_n = 1.6 rad/s, got 0.13",
+            r"time_step must be at most 0.125 s, for a controller with ω_n = 1.6 rad/s, got 0.13",
         ),
         (flying(disturbance=BREEZE, time_step=0.3), r"time_step must be at most 0.2 s"),
         (counting(flights=0), r"flights must be a whole number of at least 1, got 0"),
@@ -490,6 +490,6 @@ def test_the_room_that_the_monitor_judges_by_is_the_route_s_not_the_uav_s():
     setup, _ = setup_of(route, city, UAV, SWAY, EXACT, 0.02)
     state = start_of(route.points[0])
     state.position[1] -= 2.0
-    assert room(setup.space, state) == pytest.approx(3.0, abs=1e-9)
+    assert route_clearance(setup.obstacles, state) == pytest.approx(3.0, abs=1e-9)
     state.target[1] -= 1.0
-    assert room(setup.space, state) == pytest.approx(2.0, abs=1e-9)
+    assert route_clearance(setup.obstacles, state) == pytest.approx(2.0, abs=1e-9)

@@ -340,7 +340,7 @@ def test_it_gives_up_after_as_many_steps_as_allowed_and_not_before(moves):
     short = potential_field(OPEN, (101, -49, 11), (141, -9, 31), moves=moves, max_steps=needed.info["expanded"] - 1)
     assert not short.reached
     assert np.array_equal(short.points, needed.points[:-1])
-    assert short.reason.startswith(f"gave up after {short.info['steps']} steps at (")
+    assert short.reason.startswith(f"gave up after {short.info['expanded']} steps at (")
     assert short.cost == np.inf
 
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from uavlab.flight.autopilot import Autopilot
 from uavlab.flight.disturbance import OffsetProcess
-from uavlab.flight.motion import Air, Body, Spring, State, drift_on, fly_on
+from uavlab.flight.motion import drift_on, fly_on
 from uavlab.flight.path import Path
+from uavlab.flight.state import Air, Body, Course, Spring, State
 from uavlab.power import profile_share
 from uavlab.resilience import Controller
 from uavlab.vehicle import GRAVITY, UAV
@@ -26,8 +27,9 @@ class Model(NamedTuple):
     parts: tuple
     pace: float
 
-    def run(self, *arguments: Any) -> int:
-        return self.move(*self.parts, *arguments)
+    def run(self, course: Course, state: State, *arguments: Any) -> int:
+        """Move on: how many steps at most, every how many a row, random numbers, and the log."""
+        return self.move(*self.parts, course, state, *arguments)
 
     def hand_over(self, state: State, to: Model) -> None:
         """Offsets without a body are kept in units of σ: they stay what they are in metres."""

@@ -3,21 +3,37 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
-from uavlab.city.segments import Runs, segment_clearance
+from uavlab.city.segments import segment_clearance
 from uavlab.city.voxels import distance_to_obstacle
 from uavlab.compiled import compiled
+from uavlab.flight.reference import advance, patience, squared_distance, velocity_at
+from uavlab.flight.state import (
+    ARRIVED,
+    BATTERY,
+    BATTERY_EMPTY,
+    BLOWN_BACK,
+    BRAKED,
+    CRASHED,
+    DRAG,
+    FLYING,
+    GAUSSIAN,
+    INDUCED,
+    LEAST,
+    NONE,
+    NOW,
+    OU,
+    PROFILE,
+    RAIN,
+    WIND,
+)
 from uavlab.power import rotor_power
 from uavlab.vehicle import GRAVITY
 
 PREVIEW = 0.25
 """How far ahead and back the autopilot looks to know how its velocity has to change [s]."""
-
-LEASH = 4.0
-"""From so far on the reference waits for the UAV [m]; at twice as far it stands still."""
 
 LOST = 30.0
 """Who is as far from the reference gives up [m]: the wind is stronger than the UAV."""
@@ -34,98 +50,13 @@ LESS = 1 - 1e-12
 LEAST_THRUST, LEAST_LIFT = 0.1, 0.5
 """Of the greatest, and of the weight, whichever is less: rotors can't push down, but a strong UAV can still sink."""
 
-COLUMNS = ("time", "x", "y", "z", "x_ref", "y_ref", "z_ref", "along", "across", "up", "thrust", "speed")
-"""What is logged: position and reference [m], offset in the route's frame [m], thrust [N], speed over ground [m/s]."""
-
-NONE, GAUSSIAN, OU, DRYDEN = range(4)
-FLYING, ARRIVED, CRASHED, BLOWN_BACK, BATTERY_EMPTY = range(5)
-
-LEAST, NOW, BATTERY, INDUCED, PROFILE, DRAG, WIND, RAIN, BRAKED = range(9)
-"""What a flight sums up: least and present distance to obstacles [m], energy from the battery, and where that went [J].
-
-See `uavlab.flight.Energy`."""
-
-
-class Body(NamedTuple):
-    """The vehicle and its autopilot."""
-
-    mass: float
-    thrust: float
-    drag: float  # ½ ρ C S [kg/m]
-    tan_tilt: float
-    rain: float  # [N]
-    disc: float  # 2 ρ A of its rotors [kg/m]
-    profile: float  # drag of the blades in hover, over the ideal power
-    efficiency: float  # of motors and their control
-    charge: float  # energy that the flight may take from the battery [J]
-    trim: np.ndarray  # (3,) the mean wind that the autopilot reckons with [m/s]
-    omega: float  # ω_n of its position control [rad/s]
-    pace: float  # share of the planned speed
-    gps_fixes: float  # per step
-    gps_keep: float  # share of the error that is left at the next fix
-    gps_enter: np.ndarray  # (3,) σ of what is new in it [m]
-    gps_velocity: float  # [m/s]
-
-
-class Air(NamedTuple):
-    """The mean wind, and how gusts go on from step to step."""
-
-    mean: np.ndarray  # (3,) [m/s]
-    kind: int
-    frame: np.ndarray  # (3, 3) columns: along, across, up
-    deviation: np.ndarray  # (3,) [m/s]
-    keep: np.ndarray  # (3, 2, 2) transition of two lags; OU gusts use the first
-    enter: np.ndarray  # (3, 2, 2) of the noise
-    read: np.ndarray  # (3, 2) gust from lags
-    every: int  # steps from draw to draw
-
-
-class Spring(NamedTuple):
-    """Offsets on three axes without a body."""
-
-    mean: np.ndarray  # (3,) [m]
-    sigma: np.ndarray  # (3,) [m]
-    keep: np.ndarray  # (2, 2)
-    enter: np.ndarray  # (2, 2)
-    omega: float  # ω_n [rad/s]
-    pace: float
-
-
-class Obstacles(NamedTuple):
-    """The city."""
-
-    occupied: np.ndarray
-    runs: Runs
-    clearance: np.ndarray  # [m]
-    origin: np.ndarray
-    cell: float
-    touching: float  # distance at which the body collides [m]
-    near_goal: float  # distance from the goal at which it has arrived [m]; infinite for offsets, which have no body
-
-
-class State(NamedTuple):
-    """All that changes; flights go on from it."""
-
-    position: np.ndarray  # (3,) [m]
-    before: np.ndarray  # (3,) a step ago
-    velocity: np.ndarray
-    target: np.ndarray  # (3,) where it should be
-    seen_position: np.ndarray  # as the autopilot has it
-    seen_velocity: np.ndarray
-    lags: np.ndarray  # (3, 2) of the gusts, or offsets and their speeds
-    gust: np.ndarray  # (3,) [m/s]
-    gps_error: np.ndarray  # (3,) [m]
-    heading: np.ndarray  # (2,) of the route, level
-    way: np.ndarray  # (2,) distance along the route [m], its leg
-    sums: np.ndarray  # (9,) see LEAST to BRAKED
-    counts: np.ndarray  # (2,) steps made, rows logged
-
 
 @compiled
-def fly_on(body, air, path, space, state, dt, max_steps, log_every, rng, log):
-    """Fly up to `most` steps: FLYING, ARRIVED, CRASHED, BLOWN_BACK or BATTERY_EMPTY."""
+def fly_on(body, air, course, state, max_steps, log_every, rng, log):
+    """Fly up to so many steps, and log some: FLYING, ARRIVED, CRASHED, BLOWN_BACK or BATTERY_EMPTY."""
     target_velocity, ahead, back = np.empty(3), np.empty(3), np.empty(3)
     thrust, stream, drag, velocity = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    path, dt = course.path, course.dt
     for _ in range(max_steps):
         step = state.counts[0]
         pace = body.pace * patience(state)
@@ -148,7 +79,7 @@ def fly_on(body, air, path, space, state, dt, max_steps, log_every, rng, log):
         thrust[2] += body.mass * GRAVITY + body.rain
         limit_thrust(body, thrust)
         pulled = length(thrust)
-        outcome = log_step(path, space, state, dt, log_every, pulled, body.charge, log)
+        outcome = log_step(course, state, log_every, pulled, body.charge, log)
         if outcome != FLYING:
             return outcome
         for a in range(3):
@@ -211,9 +142,10 @@ def spend(body, air, state, dt, thrust, drag, velocity):
 
 
 @compiled
-def drift_on(spring, path, space, state, dt, max_steps, log_every, rng, log):
+def drift_on(spring, course, state, max_steps, log_every, rng, log):
     """The same for offsets without a body: they are added to the route."""
     target_velocity = np.empty(3)
+    path, dt = course.path, course.dt
     for _ in range(max_steps):
         advance(path, state, dt * spring.pace if state.counts[0] > 0 else 0.0, target_velocity)
         for a in range(3):
@@ -231,60 +163,10 @@ def drift_on(spring, path, space, state, dt, max_steps, log_every, rng, log):
             state.velocity[a] = moved if state.counts[0] > 0 else spring.pace * target_velocity[a]
             state.before[a] = state.position[a] if state.counts[0] > 0 else position
             state.position[a] = position
-        outcome = log_step(path, space, state, dt, log_every, np.nan, np.inf, log)
+        outcome = log_step(course, state, log_every, np.nan, np.inf, log)
         if outcome != FLYING:
             return outcome
     return FLYING
-
-
-@compiled
-def patience(state):
-    """Share of its speed with which the reference goes on: less where the UAV, as it sees itself, falls behind."""
-    behind = squared_distance(state.seen_position, state.target)
-    return 1.0 if behind <= LEASH**2 else max(2.0 - math.sqrt(behind) / LEASH, 0.0)
-
-
-@compiled
-def advance(path, state, dt, velocity):
-    """Move the reference along the route by a time step; its place and velocity in place, its speed returned."""
-    leg = int(state.way[1])
-    s = state.way[0]
-    s = min(s + dt * speed_at(path, s, leg), path.distance[-1])
-    while leg < len(path.on_legs) - 1 and s >= path.distance[leg + 1]:
-        leg += 1
-    state.way[0] = s
-    state.way[1] = leg
-    speed = speed_at(path, s, leg)
-    for a in range(3):
-        state.target[a] = path.points[leg, a] + (s - path.distance[leg]) * path.direction[leg, a]
-        velocity[a] = speed * path.direction[leg, a]
-    level = math.hypot(path.direction[leg, 0], path.direction[leg, 1])
-    if level > 1e-9:
-        state.heading[0] = path.direction[leg, 0] / level
-        state.heading[1] = path.direction[leg, 1] / level
-    return speed
-
-
-@compiled
-def speed_at(path, s, leg):
-    """Speed on a leg: that of the leg, less where it has to brake for the next waypoint or still gathers speed."""
-    since = path.at_points[leg] ** 2 + 2 * path.braking * max(s - path.distance[leg], 0.0)
-    until = path.at_points[leg + 1] ** 2 + 2 * path.braking * max(path.distance[leg + 1] - s, 0.0)
-    return min(path.on_legs[leg], math.sqrt(min(since, until)))
-
-
-@compiled
-def velocity_at(path, state, beyond, velocity):
-    """Velocity of the reference some metres beyond where it is, or before."""
-    s = min(max(state.way[0] + beyond, 0.0), path.distance[-1])
-    leg = int(state.way[1])
-    while leg < len(path.on_legs) - 1 and s >= path.distance[leg + 1]:
-        leg += 1
-    while leg > 0 and s < path.distance[leg]:
-        leg -= 1
-    speed = speed_at(path, s, leg)
-    for a in range(3):
-        velocity[a] = speed * path.direction[leg, a]
 
 
 @compiled
@@ -330,8 +212,9 @@ def limit_thrust(body, thrust):
 
 
 @compiled
-def log_step(path, space, state, dt, log_every, thrust, charge, log):
+def log_step(course, state, log_every, thrust, charge, log):
     """Look around after a step, log it if it is time or over, and count it."""
+    path, space = course.path, course.obstacles
     gap = closest(space, state)
     state.sums[LEAST] = min(state.sums[LEAST], gap)
     outcome = FLYING
@@ -348,7 +231,7 @@ def log_step(path, space, state, dt, log_every, thrust, charge, log):
         outcome = BLOWN_BACK
     if state.counts[0] % log_every == 0 or outcome != FLYING:
         row = log[state.counts[1]]
-        row[0] = state.counts[0] * dt
+        row[0] = state.counts[0] * course.dt
         for a in range(3):
             row[1 + a] = state.position[a]
             row[4 + a] = state.target[a]
@@ -404,24 +287,6 @@ def in_cells(space, position):
         (position[1] - space.origin[1]) / space.cell,
         (position[2] - space.origin[2]) / space.cell,
     )
-
-
-@compiled
-def squared_distance(one, other):
-    x, y, z = one[0] - other[0], one[1] - other[1], one[2] - other[2]
-    return x * x + y * y + z * z
-
-
-@compiled
-def steps_to_goal(path, pace, dt):
-    """How many steps the reference takes; one more where the first of them stands."""
-    s, leg, steps = 0.0, 0, 1
-    while s < path.distance[-1]:
-        s += dt * pace * speed_at(path, s, leg)
-        while leg < len(path.on_legs) - 1 and s >= path.distance[leg + 1]:
-            leg += 1
-        steps += 1
-    return steps
 
 
 @compiled

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uavlab import checks
-from uavlab.flight.motion import COLUMNS
+from uavlab.flight.state import COLUMNS
 from uavlab.resilience import Change
 from uavlab.route import Route
 from uavlab.statistics import grouped_share_interval

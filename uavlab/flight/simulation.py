@@ -16,7 +16,10 @@ from uavlab.city.voxels import distance_to_obstacle
 from uavlab.flight.autopilot import AUTOPILOT, PERFECT_GPS, Autopilot
 from uavlab.flight.disturbance import OffsetProcess
 from uavlab.flight.models import Model, model_of
-from uavlab.flight.motion import (
+from uavlab.flight.path import Path, constant_speed, planned_speed
+from uavlab.flight.reference import steps_to_goal
+from uavlab.flight.results import Energy, Flight, Flights
+from uavlab.flight.state import (
     ARRIVED,
     BATTERY,
     BATTERY_EMPTY,
@@ -25,12 +28,10 @@ from uavlab.flight.motion import (
     CRASHED,
     FLYING,
     LEAST,
+    Course,
     Obstacles,
     State,
-    steps_to_goal,
 )
-from uavlab.flight.path import Path, constant_speed, planned_speed
-from uavlab.flight.results import Energy, Flight, Flights
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route, as_route
 from uavlab.spline import Curve
@@ -72,7 +73,7 @@ class Setup:
 
     route: Route
     speed: float
-    space: Obstacles
+    obstacles: Obstacles
     uav: UAV
     disturbance: Disturbance
     autopilot: Autopilot
@@ -250,45 +251,44 @@ def setup_of(
     way = as_route(route)
     if not way.reached or not way.length > 0:
         raise ValueError(f"route must lead from a start to a goal{': ' * bool(way.reason)}{way.reason}")
+    first = now_of(disturbance, 0.0)
+    speed = uav.cruise_speed if autopilot.speed is None else float(autopilot.speed)
+    time_step = checked_time_step(time_step, autopilot, first, way.length / max(speed, CREEP))
+    altitude = float(np.clip(way.points[:, 2].mean() - city.origin[2], LOWEST, HIGHEST))
+    if isinstance(first, Wind):
+        grounded = why_grounded(flown_by(uav, first_controller(autopilot)), first, altitude)
+        if grounded and autopilot.heeds_limits:
+            return None, "; ".join(grounded)
+    touching = (1 - CONTACT) * uav.diameter / 2
+    near_goal = autopilot.acceptance_radius if isinstance(first, Wind) else np.inf
+    obstacles = Obstacles(city.occupied, city.runs, city.clearance, city.origin, city.cell, touching, near_goal)
+    return Setup(way, speed, obstacles, uav, disturbance, autopilot, float(time_step), altitude), ""
+
+
+def checked_time_step(time_step: float, autopilot: Autopilot, first: Wind | OffsetProcess, duration: float) -> float:
+    """The time step [s], short enough for what happens in it, and long enough for a flight of this duration [s]."""
     time_step = checks.positive_number("time_step", time_step)
     controllers = [autopilot.controller] if autopilot.monitor is None else [BASIC, ADVANCED]
     for controller in controllers:
         checks.positive_number("the controller's natural_frequency", controller.natural_frequency)
         checks.within("the controller's speed_share", controller.speed_share, SLOWEST_SHARE, 10.0, "(1: as asked for)")
     fastest = max(controller.natural_frequency for controller in controllers)
-    if time_step * fastest > LONGEST_TURN * (1 + 1e-9):
-        raise ValueError(
-            f"time_step must be at most {LONGEST_TURN / fastest:.3g} s for a controller with ω_n = {fastest:g} rad/s, "
-            f"got {time_step:g}"
-        )
-    first = now_of(disturbance, 0.0)
-    if isinstance(first, OffsetProcess) and first.rough and time_step * fastest > LONGEST_ROUGH * (1 + 1e-9):
-        raise ValueError(
-            f"time_step must be at most {LONGEST_ROUGH / fastest:.3g} s for rough offsets at ω_n = {fastest:g} rad/s, "
-            f"or crashes go unseen between the steps, got {time_step:g}"
-        )
-    speed = uav.cruise_speed if autopilot.speed is None else float(autopilot.speed)
-    slowest = min(controller.speed_share for controller in controllers)
-    steps = way.length / (max(speed, CREEP) * slowest * time_step)
+    longest = {f"for a controller with ω_n = {fastest:g} rad/s": LONGEST_TURN / fastest}
+    if isinstance(first, OffsetProcess) and first.rough:
+        unseen = f"for rough offsets at ω_n = {fastest:g} rad/s, or crashes go unseen between the steps"
+        longest[unseen] = LONGEST_ROUGH / fastest
+    if isinstance(first, Wind) and autopilot.gps != PERFECT_GPS:
+        longest["from one fix of gps to the next"] = 1 / autopilot.gps.rate
+    for why, most in longest.items():
+        if time_step > most * (1 + 1e-9):
+            raise ValueError(f"time_step must be at most {most:.3g} s, {why}, got {time_step:g}")
+    steps = duration / (min(controller.speed_share for controller in controllers) * time_step)
     if steps > MOST_STEPS:
         raise ValueError(
-            f"time_step of {time_step:g} s makes {steps:.1g} steps of a flight of {way.length:.0f} m, of which at most "
+            f"time_step of {time_step:g} s makes {steps:.1g} steps of a flight of {duration:.0f} s, of which at most "
             f"{MOST_STEPS:,.0f} are made: take longer ones"
         )
-    altitude = float(np.clip(way.points[:, 2].mean() - city.origin[2], LOWEST, HIGHEST))
-    if isinstance(first, Wind):
-        if autopilot.gps != PERFECT_GPS and time_step * autopilot.gps.rate > 1 + 1e-9:
-            raise ValueError(
-                f"time_step must be at most {1 / autopilot.gps.rate:.3g} s, from one fix of gps to the next, "
-                f"got {time_step:g}"
-            )
-        grounded = why_grounded(flown_by(uav, first_controller(autopilot)), first, altitude)
-        if grounded and autopilot.heeds_limits:
-            return None, "; ".join(grounded)
-    touching = (1 - CONTACT) * uav.diameter / 2
-    near_goal = autopilot.acceptance_radius if isinstance(first, Wind) else np.inf
-    space = Obstacles(city.occupied, city.runs, city.clearance, city.origin, city.cell, touching, near_goal)
-    return Setup(way, speed, space, uav, disturbance, autopilot, float(time_step), altitude), ""
+    return time_step
 
 
 def first_controller(autopilot: Autopilot) -> Controller:
@@ -298,8 +298,8 @@ def first_controller(autopilot: Autopilot) -> Controller:
     return autopilot.monitor.controller
 
 
-def now_of(disturbance: Disturbance, time: float) -> Wind | OffsetProcess:
-    """The disturbance at a time."""
+def now_of(disturbance: Disturbance, time: float, *, like: Wind | OffsetProcess | None = None) -> Wind | OffsetProcess:
+    """The disturbance at a time, of the same kind as an earlier one."""
     if isinstance(disturbance, type):
         raise ValueError(f"disturbance must be one {disturbance.__name__}, as {disturbance.__name__}(), got its class")
     now = disturbance(time) if callable(disturbance) else disturbance
@@ -307,7 +307,13 @@ def now_of(disturbance: Disturbance, time: float) -> Wind | OffsetProcess:
         raise ValueError(
             f"disturbance must be a Wind, a Weather or an OffsetProcess, or return one, got {type(now).__name__}"
         )
-    return now if isinstance(now, OffsetProcess) else wind_of(now)
+    now = now if isinstance(now, OffsetProcess) else wind_of(now)
+    if like is not None and type(now) is not type(like):
+        raise ValueError(
+            f"disturbance must always return the same kind, got {type(now).__name__} at {time:g} s "
+            f"after {type(like).__name__}"
+        )
+    return now
 
 
 def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
@@ -327,22 +333,17 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
     while True:
         log = np.empty((most // every + 2, len(COLUMNS)))
         state.counts[1] = 0
-        outcome = model.run(path, setup.space, state, dt, most, every, generator, log)
+        outcome = model.run(Course(path, setup.obstacles, dt), state, most, every, generator, log)
         logs.append(log[: state.counts[1]])
         if outcome != FLYING or ending:
             break
         time = float(state.counts[0] * dt)
         if state.counts[0] > longest:
-            ending = "out of time"
-        then, advised = now_of(setup.disturbance, time), controller
-        if type(then) is not type(now):
-            raise ValueError(
-                f"disturbance must always return the same kind, got {type(then).__name__} at {time:g} s "
-                f"after {type(now).__name__}"
-            )
+            ending = OUT_OF_TIME
+        then, advised = now_of(setup.disturbance, time, like=now), controller
         if monitor:
             seen = state.seen_position if isinstance(now, Wind) else state.position
-            advised = monitor.observe(time, off_route(path, seen, state), route_clearance(setup.space, state))
+            advised = monitor.observe(time, off_route(path, seen, state), route_clearance(setup.obstacles, state))
             if autopilot.strategy == "grounded" and advised != controller:
                 ending = "landed"
         if ending:
@@ -354,22 +355,30 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
             model.hand_over(state, changed)
             model = changed
     flight_log = np.concatenate(logs)
-    where = f"after {flight_log[-1, 0]:.1f} s at {checks.show(flight_log[-1, 1:4])}"
     changes = monitor.log if monitor else []
-    if outcome == CRASHED:
-        name, reason = "crashed", f"crashed {where}"
-    elif outcome == ARRIVED:
-        name, reason = "arrived", ""
-    elif outcome == BATTERY_EMPTY:
-        name, reason = "gave up", f"battery empty {where}, {from_goal(path, state):.1f} m from the goal"
-    elif outcome == BLOWN_BACK:
-        name, reason = "gave up", f"blown back {where}, {behind(state):.0f} m from its reference"
-    elif ending == "out of time":
-        name, reason = "gave up", f"out of time {where}, {from_goal(path, state):.1f} m from the goal"
-    else:
-        name, reason = "landed", f"landed {where}: {changes[-1].reason}"
+    if ending == "landed":
+        ending = changes[-1].reason
+    name, reason = ending_of(outcome, ending, flight_log[-1], path, state)
     energy = energy_of(state, setup.uav, path.points[0]) if isinstance(now, Wind) else None
     return Flight(name, reason, flight_log, float(state.sums[LEAST]), energy, changes)
+
+
+OUT_OF_TIME = "out of time"
+
+
+def ending_of(outcome: int, ending: str, last: np.ndarray, path: Path, state: State) -> tuple[str, str]:
+    """How a flight ended, and why, by what it had come to and the last row of its log."""
+    where = f"after {last[0]:.1f} s at {checks.show(last[1:4])}"
+    if outcome == CRASHED:
+        return "crashed", f"crashed {where}"
+    if outcome == ARRIVED:
+        return "arrived", ""
+    if outcome == BLOWN_BACK:
+        return "gave up", f"blown back {where}, {behind(state):.0f} m from its reference"
+    if outcome == BATTERY_EMPTY or ending == OUT_OF_TIME:
+        why = "battery empty" if outcome == BATTERY_EMPTY else OUT_OF_TIME
+        return "gave up", f"{why} {where}, {from_goal(path, state):.1f} m from the goal"
+    return "landed", f"landed {where}: {ending}"
 
 
 def flown_by(uav: UAV, controller: Controller) -> UAV:
