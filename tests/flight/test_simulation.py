@@ -426,9 +426,12 @@ def counting(**options):
         (flying(city=reference_campus()), r"city must be a City, got RiskMap"),
         (flying(uav="quadrotor"), r"uav must be a UAV, got str"),
         (flying(autopilot=ADVANCED), r"autopilot must be an Autopilot, got Controller: Autopilot\(\) is the usual one"),
-        (flying(disturbance=3.0), r"disturbance must be a Wind, a Weather or an OffsetProcess, or return one, got float"),
-        (flying(disturbance=lambda time: None), r"disturbance must be a Wind .* got NoneType"),
-        (flying(disturbance=lambda time: SWAY if time < 2 else 1.0), r"disturbance must be a Wind .* got float"),
+        (
+            flying(disturbance=3.0),
+            r"disturbance must be a Wind, a Weather or an OffsetProcess, or return one, got float",
+        ),
+        (flying(disturbance=lambda time: None), r"disturbance must be a Wind, .* got NoneType"),
+        (flying(disturbance=lambda time: SWAY if time < 2 else 1.0), r"disturbance must be a Wind, .* got float"),
         (
             flying(disturbance=lambda time: SWAY if time < 2 else BREEZE),
             r"disturbance must always return the same kind, got Wind at 2 s after OffsetProcess",

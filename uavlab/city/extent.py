@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city.buildings import Building
-from uavlab.city.terrain import Terrain
+from uavlab.city.terrain import Terrain, ground_and_top
 
 MOST_VOXELS = 500_000_000
 """More than this is refused: half a gigabyte for the occupancy alone."""
@@ -47,6 +47,32 @@ def check_heights(min_height: float, max_height: float) -> None:
     checks.number("max_height", max_height)
     if not max_height > min_height:
         raise ValueError(f"max_height must be above min_height ({min_height:g} m), got {max_height!r}")
+
+
+def extent_and_ground(
+    buildings: Sequence[Building],
+    cell: float,
+    origin: npt.ArrayLike | None,
+    size: npt.ArrayLike | None,
+    margin: float,
+    terrain: Terrain | float | None,
+) -> tuple[np.ndarray, tuple[int, int, int], np.ndarray | None, np.ndarray | None]:
+    """Lowest corner [m] and shape of a map, and its ground at the columns' centres and highest, (nx, ny) each [m]."""
+    corner, shape = extent_of(buildings, cell, origin, size, margin, terrain)
+    ground = top = None
+    if isinstance(terrain, Terrain):
+        ground, top = ground_and_top(terrain, corner, cell, shape)
+        if origin is None or size is None:  # the extent in height follows the ground of this map alone
+            least, most = float(ground.min()), float(top.max())
+            low = least if origin is None else corner[2]
+            high = max(corner[2] + cell * shape[2], most + margin) if size is None else corner[2] + cell * shape[2]
+            corner[2] = np.floor(least / cell - 1e-9) * cell - cell if origin is None else low
+            shape = (*shape[:2], int(np.ceil((high - corner[2]) / cell - 1e-9)))
+    elif terrain is not None:
+        checks.finite("terrain", level := checks.number("terrain", terrain))
+        ground = np.full(shape[:2], level)
+    check_size(shape, cell)
+    return corner, shape, ground, top
 
 
 def extent_of(

@@ -19,18 +19,17 @@ from uavlab import checks
 from uavlab.city.buildings import Building
 from uavlab.city.extent import (
     check_heights,
-    check_size,
     checked_cell,
     checked_origin,
     checked_points,
-    extent_of,
+    extent_and_ground,
     locked,
 )
 from uavlab.city.place import Place
 from uavlab.city.rasterise import RULES, bilinear, mark_ground, raise_surface, range_of_ground, rasterise, touches
 from uavlab.city.segments import Runs, runs_of, segment_clearances
 from uavlab.city.source import Source
-from uavlab.city.terrain import Terrain, ground_and_top
+from uavlab.city.terrain import Terrain
 from uavlab.city.voxels import TOUCH, distances_to_obstacle, squared_clearance, voxels_on_segment
 from uavlab.city.zones import NoFlyZone, checked_zones
 
@@ -158,21 +157,7 @@ class City:
         cell = checked_cell(cell)
         checks.one_of("voxels", voxels, RULES)
         checks.not_negative_number("margin", margin)
-        corner, shape = extent_of(buildings, cell, origin, size, margin, terrain)
-        ground = top = None
-        if isinstance(terrain, Terrain):
-            ground, top = ground_and_top(terrain, corner, cell, shape)
-            if origin is None or size is None:  # the extent in height follows the ground of this map alone
-                least, most = float(ground.min()), float(top.max())
-                low = least if origin is None else corner[2]
-                high = max(corner[2] + cell * shape[2], most + margin) if size is None else corner[2] + cell * shape[2]
-                corner[2] = np.floor(least / cell - 1e-9) * cell - cell if origin is None else low
-                shape = (*shape[:2], int(np.ceil((high - corner[2]) / cell - 1e-9)))
-        elif terrain is not None:
-            checks.number("terrain", terrain)
-            checks.finite("terrain", terrain)
-            ground = np.full(shape[:2], float(terrain))
-        check_size(shape, cell)
+        corner, shape, ground, top = extent_and_ground(buildings, cell, origin, size, margin, terrain)
         occupied = np.zeros(shape, dtype=bool)
         if top is not None:
             mark_ground(occupied, top, cell, corner[2])

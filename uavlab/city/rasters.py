@@ -80,9 +80,8 @@ def read_ascii_grid(path: Path, crs: Any) -> Terrain:
     heights[np.isclose(heights, header.get("nodata_value", -9999.0), rtol=1e-6, atol=0.0)] = np.nan  # it may be rounded
     west = header[corner[0]] - (dx / 2 if corner[0] == "xllcenter" else 0.0)
     south = header[corner[1]] - (dy / 2 if corner[1] == "yllcenter" else 0.0)
-    return Terrain.from_raster(
-        heights, (west, south, west + columns * dx, south + rows * dy), crs=system_beside(path) if crs is None else crs
-    )
+    bounds = west, south, west + columns * dx, south + rows * dy
+    return Terrain.from_raster(heights, bounds, crs=system_beside(path) if crs is None else crs)
 
 
 def system_beside(path: Path) -> System | None:

@@ -345,7 +345,7 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
             seen = state.seen_position if isinstance(now, Wind) else state.position
             advised = monitor.observe(time, off_route(path, seen, state), route_clearance(setup.obstacles, state))
             if autopilot.strategy == "grounded" and advised != controller:
-                ending = "landed"
+                ending = monitor.log[-1].reason
         if ending:
             most, every = 1, 1  # one step more, to log where
         if (then, advised) != (now, controller):
@@ -355,12 +355,9 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
             model.hand_over(state, changed)
             model = changed
     flight_log = np.concatenate(logs)
-    changes = monitor.log if monitor else []
-    if ending == "landed":
-        ending = changes[-1].reason
     name, reason = ending_of(outcome, ending, flight_log[-1], path, state)
     energy = energy_of(state, setup.uav, path.points[0]) if isinstance(now, Wind) else None
-    return Flight(name, reason, flight_log, float(state.sums[LEAST]), energy, changes)
+    return Flight(name, reason, flight_log, float(state.sums[LEAST]), energy, monitor.log if monitor else [])
 
 
 OUT_OF_TIME = "out of time"

@@ -140,14 +140,7 @@ def ant_colony(
         else Habits(alpha, beta, gamma, evaporation, deposit, min_pheromone, initial_pheromone, max_pheromone)
     )
     check_habits(habits)
-    checks.whole("ants", ants, least=1)
-    checks.whole("splits", splits, least=0)
-    if demand is not None:
-        checks.positive_number("demand", demand)
-    checks.whole("budget", budget, least=1)
-    least = ants * (splits + 1) * (2 if splits else 1)
-    if budget < least:
-        raise ValueError(f"budget must be at least {least}, for {ants} ants and {splits} splits, got {budget}")
+    check_budget(budget, ants, splits, demand)
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     allowed = checked_length(max_length)
     longest = in_cells(risk_map.city, allowed)
@@ -186,6 +179,18 @@ def why_none_arrived(risk_map: RiskMap, query: Query, limits: Limits, max_length
         return f"there is no way; {what_binds(risk_map, query, limits, max_length)}"
     cure = "larger max_turn" if max_length is None else "larger max_turn or max_length"
     return f"each ran into a dead end of voxels it may not turn to, or had visited; more ants may help, or a {cure}"
+
+
+def check_budget(budget: int, ants: int, splits: int, demand: float | None) -> None:
+    """Refuse one that isn't enough for a generation of each search, and a demand that is no cost."""
+    if demand is not None:
+        checks.positive_number("demand", demand)
+    checks.whole("ants", ants, least=1)
+    checks.whole("splits", splits, least=0)
+    checks.whole("budget", budget, least=1)
+    least = ants * (splits + 1) * (2 if splits else 1)
+    if budget < least:
+        raise ValueError(f"budget must be at least {least}, for {ants} ants and {splits} splits, got {budget}")
 
 
 def check_habits(habits: Habits) -> None:

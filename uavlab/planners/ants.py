@@ -212,8 +212,7 @@ def walk(ground, ant, rng, nodes):
 
     It visits no node that is TAKEN, and none twice.
     """
-    query, visited_by = ground.query, ground.visited_by
-    heading = ground.heading
+    query, visited_by, heading = ground.query, ground.visited_by, ground.heading
     steps = steps_of(query.blocked)
     weights = np.empty(26)
     node = query.source
@@ -232,8 +231,7 @@ def walk(ground, ant, rng, nodes):
             if visited_by[neighbour] == ant or visited_by[neighbour] == TAKEN:
                 continue
             if neighbour == query.target:
-                arrives = state_after(heading, move, neighbour) % STATES
-                if ground.leaving_move == NO_MOVE or query.turn[arrives, ground.leaving_move]:
+                if may_leave(ground, state_after(heading, move, neighbour) % STATES):
                     chosen = move
                 continue
             weights[move] = ground.alpha * max(ground.trail[neighbour], ground.least) + ground.attraction[neighbour]
@@ -254,6 +252,12 @@ def walk(ground, ant, rng, nodes):
         if node == query.target:
             return count + 1, cost, length
     return 0, np.inf, 0.0
+
+
+@compiled
+def may_leave(ground, heading):
+    """Whether an ant that reaches the target with a heading can go on as the next piece of the route does."""
+    return ground.leaving_move == NO_MOVE or ground.query.turn[heading, ground.leaving_move]
 
 
 @compiled

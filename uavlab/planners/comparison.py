@@ -196,16 +196,9 @@ def compare_planners(
     for number, route in enumerate(exact):
         if not route.reached:
             raise ValueError(f"maps must have a route from start to goal, maps[{number}] has none: {route.reason}")
+    alike = {"start": start, "goal": goal, "budget": budget, "refinement": refinement}
     cases = [
-        {
-            "planner": planner,
-            "risk_map": risk_map,
-            "start": start,
-            "goal": goal,
-            "budget": budget,
-            "rng": seed,
-            "refinement": refinement,
-        }
+        {"planner": planner, "risk_map": risk_map, "rng": seed, **alike}
         for planner in planners.values()
         for risk_map in maps
         for seed in seeds

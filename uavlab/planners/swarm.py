@@ -146,12 +146,9 @@ def waypoint_swarm(
     """
     began = time.perf_counter()
     rng = checks.generator("rng", rng)
-    for name, value, known in (
-        ("optimizer", optimizer, OPTIMIZERS),
-        ("encoding", encoding, ("points", "planes")),
-        ("curve", curve, ("spline", "polyline")),
-    ):
-        checks.one_of(name, value, known)
+    checks.one_of("optimizer", optimizer, OPTIMIZERS)
+    checks.one_of("encoding", encoding, ("points", "planes"))
+    checks.one_of("curve", curve, ("spline", "polyline"))
     for name, count, least in (("waypoints", waypoints, 1), ("arcs", arcs, 0), ("budget", budget, 1)):
         checks.whole(name, count, least)
     check_refinement(refinement)
@@ -177,14 +174,7 @@ def waypoint_swarm(
         initial = walked if walked.reached else initial
     begin = None if initial is None else near(task, initial.en_route, risk_map, waypoints)
     first = first_vectors(measure, space, arcs, begin, rng)
-    if len(first):
-        settings = {"start": first[:swarm], **settings}
-    if optimizer == "pso_bas":
-        settings = {"block": len(space.axes), **settings}
-    search, own = OPTIMIZERS[optimizer]
-    before = measure.made
-    found = search(lambda vectors: measure(space.control(vectors)), space.bounds, left, rng, **{**own, **settings})
-    measure.iterations += (before + found.iterations).tolist()
+    found = searched(measure, space, optimizer, first[:swarm], left, rng, settings)
     if last:
         move_finer(measure, space, found, last, rng)
     route = finished(route_of(measure, risk_map, f"{optimizer} waypoints"), ends, price, weights, longest)
@@ -203,6 +193,27 @@ def waypoint_swarm(
         reason = f"the best of {measure.made} curves from {checks.show(start)} to {checks.show(goal)} {route.reason}"
         return Route.none(route.planner, reason, **info)
     return replace(route, info=info)
+
+
+def searched(
+    measure: Measure,
+    space: Encoding,
+    optimizer: str,
+    first: np.ndarray,
+    budget: int,
+    rng: np.random.Generator,
+    settings: dict[str, Any],
+) -> Result:
+    """What an optimiser finds from the first vectors (N, D) on."""
+    search, own = OPTIMIZERS[optimizer]
+    if len(first):
+        own = {**own, "start": first}
+    if optimizer == "pso_bas":
+        own = {**own, "block": len(space.axes)}
+    before = measure.made
+    found = search(lambda vectors: measure(space.control(vectors)), space.bounds, budget, rng, **{**own, **settings})
+    measure.iterations += (before + found.iterations).tolist()
+    return found
 
 
 def refine(
