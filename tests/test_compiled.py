@@ -141,3 +141,70 @@ def test_compiled_code_older_than_the_newest_source_is_dropped(tmp_path):
 def test_compiled_code_that_another_process_drops_meanwhile_is_no_error(tmp_path):
     (tmp_path / "gone.nbi").symlink_to(tmp_path / "dropped by another")
     discard_stale(tmp_path)
+
+
+EVERYTHING = """
+import json, sys, warnings
+if sys.argv[1:] == ["without"]:
+    sys.modules["numba"] = None  # an import of it fails
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    import numpy as np
+    from uavlab import planners
+    from uavlab.city import Building, City
+    from uavlab.flight import OffsetProcess, fly
+    from uavlab.risk import RiskMap
+    from uavlab.spline import smooth
+    from uavlab.vehicle import LIGHT_QUADROTOR
+    from uavlab.weather import Wind
+ends = (3.0, 3.0, 3.0), (13.0, 13.0, 5.0)
+tower = Building.prism([(6, 6), (10, 6), (10, 10), (6, 10)], 8.0)
+city = City.from_buildings([tower], cell=2.0, origin=(0, 0, 0), size=(16, 16, 12))
+risk_map = RiskMap(city, np.linspace(0, 0.01, 64).reshape(8, 8), 0.2, safe_height=0.0)
+route = planners.astar(city, *ends, min_clearance=0.6)
+routes = [
+    route,
+    planners.shortcut(route, city),
+    planners.theta_star(city, *ends, min_clearance=0.6),
+    planners.potential_field(city, *ends),
+    planners.repare(city, *ends, disturbance="none"),
+    planners.hazard_astar(city, *ends, sigma=0.2, uav_diameter=0.5),
+    planners.least_energy(city, *ends, LIGHT_QUADROTOR, Wind((2.0, 1.0))),
+    planners.least_risk(risk_map, *ends),
+    planners.least_risk(risk_map, *ends, drift=True, max_length=25.0),
+    planners.ant_colony(risk_map, *ends, rng=0, budget=60),
+    planners.waypoint_swarm(risk_map, *ends, rng=0, budget=300, arcs=50),
+]
+curve = smooth(route, city, LIGHT_QUADROTOR, min_clearance=0.55)
+gusts = Wind(gusts="dryden", mean=(2, 0)), OffsetProcess(0.1)
+flights = [fly(curve, city, LIGHT_QUADROTOR, each, rng=1) for each in gusts]
+print(json.dumps({
+    "points": [route.points.round(6).tolist() for route in routes],
+    "reached": [route.reached for route in routes],
+    "flights": [[flight.outcome, round(flight.clearance, 6), flight.log[-1, 0]] for flight in flights],
+    "slow": [str(w.message) for w in caught if "numba" in str(w.message)],
+}))
+"""
+
+
+def test_without_numba_everything_works_slowly_after_one_warning():
+    runs = [
+        json.loads(
+            subprocess.run(
+                [sys.executable, "-c", EVERYTHING, *arguments],
+                capture_output=True,
+                text=True,
+                check=True,
+                cwd=PACKAGE.parent,
+            ).stdout
+        )
+        for arguments in ([], ["without"])
+    ]
+    compiled, plain = runs
+    assert plain["reached"] == compiled["reached"]
+    assert sum(plain["reached"]) >= 10
+    assert plain["points"] == compiled["points"]
+    assert plain["flights"] == compiled["flights"]
+    assert compiled["slow"] == []
+    assert len(plain["slow"]) == 1
+    assert "plain Python" in plain["slow"][0]

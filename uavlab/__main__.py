@@ -20,6 +20,7 @@ import numpy as np
 
 from uavlab import __version__
 from uavlab.report import grounded_page, report
+from uavlab.requirements import require
 from uavlab.whole_way import (
     default_flight,
     heights_of,
@@ -49,7 +50,7 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(joined(sys.argv[1:] if arguments is None else arguments))
     try:
         return run(options)
-    except (ValueError, OSError, OverflowError) as error:
+    except (ValueError, OSError, OverflowError, ImportError) as error:
         print(f"uavlab: {error}", file=sys.stderr)
     except MemoryError as error:
         print(f"uavlab: the memory isn't enough ({error}): take a larger --cell, or fewer --flights", file=sys.stderr)
@@ -170,6 +171,7 @@ def run(options: argparse.Namespace) -> int:
     from uavlab.flight.simulation import MOST_FLIGHTS
 
     began = time.perf_counter()
+    require("meshcat", "scene")  # before any work
     if not 0 <= options.flights <= MOST_FLIGHTS:
         raise ValueError(f"--flights must be from 0 to {MOST_FLIGHTS:,}, got {options.flights:.6g}")
     if not 0 <= options.detour < np.inf:

@@ -3,7 +3,7 @@
 `@compiled` translates a function at its first call and keeps the result on disk, so that only the first run on a
 machine waits for it. Division by zero gives ±∞ or NaN, as in NumPy: to look for it costs a sixth of the time of a
 flight. Where no cache folder can be written, the function is translated again in each process, after
-one warning.
+one warning; where there is no numba, it stays the Python that it is, after another.
 """
 
 from __future__ import annotations
@@ -16,21 +16,27 @@ from pathlib import Path
 from time import time as now
 from typing import Any, TypeVar
 
-import numba
-from numba.core import config
-from numba.core.caching import FunctionCache
+try:
+    import numba
+    from numba.core import config
+    from numba.core.caching import FunctionCache
+except ImportError:
+    numba, FunctionCache = None, object  # type: ignore[assignment,misc]
 
 F = TypeVar("F", bound=Callable)
 
 
 def compiled(function: F) -> F:
     """Compile a function of numbers, arrays and named tuples with numba, cached on disk where that is possible."""
+    if numba is None:
+        warn_of_slowness()
+        return function
     if config.DISABLE_JIT:  # type: ignore[attr-defined]  # NUMBA_DISABLE_JIT=1, to step through with a debugger
         return function
     try:
         dispatcher: Any = numba.njit(cache=True, error_model="numpy")(function)
     except RuntimeError:  # numba found no folder that it may write
-        warn_once()
+        warn_of_folder()
         uncached: Any = numba.njit(error_model="numpy")(function)
         return uncached
     discard_stale(Path(dispatcher.stats.cache_path))
@@ -50,7 +56,17 @@ class MendingCache(FunctionCache):
 
 
 @cache
-def warn_once() -> None:
+def warn_of_slowness() -> None:
+    warnings.warn(
+        "numba isn't installed, so planners and flights run as plain Python: all answers are the same, a hundred times "
+        'later; pip install numba, or "uavlab" with what it needs',
+        RuntimeWarning,
+        stacklevel=3,
+    )
+
+
+@cache
+def warn_of_folder() -> None:
     warnings.warn(
         "numba's cache folder can't be written, so the planners are compiled anew in each run (about ten seconds); "
         "set NUMBA_CACHE_DIR to a folder you may write",

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from scipy.special import betaln
-from scipy.stats import beta
 
 from uavlab import checks
 
@@ -44,6 +43,8 @@ def share_interval(count: int, total: int) -> tuple[float, float]:
     ValueError
         If there are no trials, or more events than trials.
     """
+    from scipy.stats import beta
+
     checks.whole("total", total, least=1)
     checks.whole("count", count, least=0)
     if count > total:

@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 import shapely
-from scipy.spatial import ConvexHull, QhullError
 
 from uavlab import checks
 
@@ -150,6 +149,8 @@ class Building:
     @cached_property
     def hulls(self) -> tuple[Hull, ...]:
         """The surface of each piece."""
+        from scipy.spatial import ConvexHull, QhullError
+
         try:
             found = [ConvexHull(piece) for piece in self.pieces]
         except (QhullError, ValueError):

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
 
 from uavlab import checks
 from uavlab.city.columns import share_out
@@ -175,6 +174,8 @@ class Terrain:
 
     def heights_at(self, places: npt.ArrayLike) -> np.ndarray:
         """Heights (N,) [m] of the ground at places (N, 2); NaN where it isn't known."""
+        from scipy.spatial import cKDTree
+
         plan = checks.numbers("places", places)
         if plan.ndim != 2 or plan.shape[1] != 2 or not np.isfinite(plan).all():
             raise ValueError(f"places must be finite and have shape (N, 2), got {plan.shape}")

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.spatial import Delaunay, QhullError
 
 from uavlab.compiled import compiled
 
@@ -30,6 +29,8 @@ def rims_of(triangles: np.ndarray, count: int) -> np.ndarray:
 
 def triangulated(points: np.ndarray) -> np.ndarray:
     """Delaunay triangles (T, 3) of points (N, 3) in plan; none where fewer than three are not on a line."""
+    from scipy.spatial import Delaunay, QhullError
+
     try:
         return Delaunay(points[:, :2] - points[:, :2].mean(axis=0)).simplices
     except (QhullError, ValueError):

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import quad
 
 from uavlab import checks
 from uavlab.offsets.exposure import spring_transition
@@ -100,6 +99,8 @@ def offset_sigma(
     ValueError
         If the air stands still relative to the UAV: small gusts then have no force.
     """
+    from scipy.integrate import quad
+
     stream = np.array(wind.mean) - checks.three("ground_velocity", ground_velocity)
     speed = float(np.linalg.norm(stream))
     if speed == 0:

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
-from scipy.stats import skew
 
 from uavlab import checks
 from uavlab.offsets.pauta import PAUTA_COVERAGE
@@ -129,6 +127,9 @@ class SkewedOffset:
         ValueError
             If a sample is not finite, or the skewness isn't one that I from 0 to 1 can give.
         """
+        from scipy.optimize import brentq
+        from scipy.stats import skew
+
         values = checks.samples(samples, least=3)
         least, most = (cls(0.0, 1.0, intensity).skewness for intensity in (1e-6, 1.0))
         found = float(skew(values))

@@ -7,10 +7,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import quad
-from scipy.optimize import brentq
 from scipy.special import ndtr
-from scipy.stats import norm, rayleigh, rice
 
 from uavlab import checks
 from uavlab.offsets.pauta import PAUTA_COVERAGE, pauta_radius
@@ -106,6 +103,8 @@ class JointOffset:
 
         Exact, by integrating the Gaussian across the circle along the principal axes.
         """
+        from scipy.integrate import quad
+
         checks.not_negative("radius", radius)
         variance, axes = np.linalg.eigh(self.covariance)
         (mean, other_mean), (sigma, other_sigma) = self.mean @ axes, np.sqrt(variance)
@@ -120,6 +119,8 @@ class JointOffset:
 
     def circle(self, coverage: float = PAUTA_COVERAGE) -> float:
         """Radius [m] of the circle around the route that holds `coverage`: the ξ of Eq. 7 for all directions."""
+        from scipy.optimize import brentq
+
         share = checks.share("coverage", coverage)
         widest = np.sqrt(np.linalg.eigvalsh(self.covariance)[-1])
         around_ellipse = np.hypot(*self.mean) + 1.01 * pauta_radius(2, coverage) * widest
@@ -216,6 +217,8 @@ def magnitude(sigma: float, mean_length: float = 0.0) -> Any:
     ValueError
         If σ is not above 0 or the mean offset negative.
     """
+    from scipy.stats import norm, rayleigh, rice
+
     sigma = checks.positive_number("sigma", sigma)
     away = checks.not_negative_number("mean_length", mean_length) / sigma
     if away == 0:

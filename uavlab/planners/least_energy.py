@@ -13,7 +13,6 @@ from functools import partial
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import HalfspaceIntersection
 
 from uavlab import checks
 from uavlab.city import City
@@ -107,6 +106,8 @@ def slopes_of(costs: np.ndarray) -> np.ndarray:
 
     The corners of the polyhedron y·move ≤ cost (linear programming's dual); one of zeros where a move is free.
     """
+    from scipy.spatial import HalfspaceIntersection
+
     known = np.isfinite(costs)
     if costs.min() <= 0 or np.linalg.matrix_rank(MOVES[known]) < 3:
         return np.zeros((1, 3))

@@ -10,7 +10,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from uavlab.checks import frozen
 from uavlab.city import City
@@ -50,6 +49,8 @@ def falls_of(
     city: City, uav: UAV, population_density: np.ndarray, shelter: np.ndarray, vehicle_share: np.ndarray
 ) -> Falls:
     """All falls of a UAV on a map with these layers (nx, ny), from as high as the map is."""
+    from scipy.integrate import solve_ivp
+
     pitch = np.radians(np.arange(-90.0, 90.0 + PITCH_STEP / 2, PITCH_STEP))
     depth = city.cell * city.shape[2]
     motion, enough = fall_motion(uav, uav.cruise_speed, depth, AIR_DENSITY)

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import solve_ivp
 
 from uavlab import checks
 from uavlab.vehicle import GRAVITY, RISK_QUADROTOR, UAV
@@ -134,6 +133,8 @@ def ballistic_fall(
 
 def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_density: float) -> Any:
     """SciPy's solution of the fall until `depth` metres are lost: `sol(t)` is (distance, drop, and their rates)."""
+    from scipy.integrate import solve_ivp
+
     checks.instance("uav", uav, UAV)
     speed = uav.cruise_speed if speed is None else speed
     checks.not_negative_number("speed", speed)

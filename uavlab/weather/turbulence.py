@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import lfilter
 from scipy.special import gammainc
 
 from uavlab import checks
@@ -171,6 +170,8 @@ def time_scales(air_speed: float, altitude: float, wind_at_6m: float) -> tuple[n
 
 def two_lags(normal: np.ndarray, step: float) -> np.ndarray:
     """States (N, 2) of the two lags, made from standard normal numbers (N, 2), a step (in time scales) apart."""
+    from scipy.signal import lfilter
+
     transition, covariance = lag_step(step)
     driven = normal @ np.linalg.cholesky(covariance).T
     driven[0] = np.linalg.cholesky(STATIONARY) @ normal[0]
