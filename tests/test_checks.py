@@ -39,3 +39,38 @@ def test_a_seed_of_any_width_is_one():
     assert checks.generator("rng", [1, np.int64(2)]).random() == np.random.default_rng([1, 2]).random()
     rng = np.random.default_rng(0)
     assert checks.generator("rng", rng) is rng
+
+
+@pytest.mark.parametrize(
+    ("check", "message"),
+    [
+        (lambda: checks.array("points", [1, 2, 3], None, 3), r"points must have shape \(N, 3\), got \(3,\)"),
+        (lambda: checks.array("points", [[1, 2]], ..., 3), r"points must have shape \(\.\.\., 3\), got \(1, 2\)"),
+        (lambda: checks.array("size", [[1, 2, 3]], 3), r"size must have shape \(3,\), got \(1, 3\)"),
+        (lambda: checks.array("size", [1, np.nan, 3], 3), "size must be finite, got nan in it"),
+        (lambda: checks.array("grid", 1.0, None, None), r"grid must have shape \(N, M\), got \(\)"),
+        (lambda: checks.text("name", 3), "name must be text, got 3"),
+        (lambda: checks.path("path", 2), "path must be the name of a file, got 2"),
+        (lambda: checks.function("f", 3, "f(x)"), r"f must be a function, called as f\(x\), got 3"),
+        (lambda: checks.function("f", City), "f must be a function, got <class"),
+        (lambda: checks.several("routes", Route([(0, 0, 0)]), Route), "routes must be a list of Route, got Route"),
+        (lambda: checks.several("routes", [EMPTY], Route), r"routes\[0\] must be a Route, got City"),
+        (lambda: checks.several("routes", [], Route), "routes must hold at least 1 Route, got 0"),
+        (lambda: checks.by_name("flights", [1]), "flights must be something by name"),
+        (lambda: checks.by_name("routes", {"A*": EMPTY}, Route), r"routes\['A\*'\] must be a Route, got City"),
+        (lambda: checks.by_name("routes", {1: Route([(0, 0, 0)])}, Route), "the names of routes must be text, got 1"),
+        (lambda: checks.by_name("routes", {}, Route), "routes must hold at least 1, got 0"),
+    ],
+)
+def test_what_is_of_another_kind_is_named(check, message):
+    with pytest.raises(ValueError, match=message):
+        check()
+
+
+def test_what_is_right_comes_back():
+    assert checks.array("points", [(1, 2, 3)], ..., 3).dtype == float
+    assert checks.array("points", np.zeros((2, 4, 3)), ..., 3).shape == (2, 4, 3)
+    assert checks.array("values", [np.inf], None, finite=False).tolist() == [np.inf]
+    assert checks.path("path", "a.csv").name == "a.csv"
+    assert checks.several("routes", (Route([(0, 0, 0)]),), Route)[0].planner == "given"
+    assert list(checks.by_name("functions", {"f": abs})) == ["f"]

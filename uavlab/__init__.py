@@ -5,4 +5,4 @@ voxels, `uavlab.planners` finds routes, `uavlab.route` measures them, `uavlab.pl
 Inside, everything is in metres, seconds, kilograms, newtons and radians; x points east, y north, z up.
 """
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

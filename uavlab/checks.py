@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -112,6 +114,69 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
+def array(name: str, value: npt.ArrayLike, *shape: Any, finite: bool = True) -> np.ndarray:
+    """The argument as floats of a shape: `array("points", points, None, 3)` for (N, 3), `..., 3` for (..., 3)."""
+    values = numbers(name, value)
+    tail = shape[1:] if shape[:1] == (...,) else shape
+    fits = values.ndim >= len(tail) if len(tail) < len(shape) else values.ndim == len(shape)
+    ends = values.shape[values.ndim - len(tail) :]
+    if not (fits and all(asked in (None, got) for asked, got in zip(tail, ends, strict=False))):
+        letters = iter("NMKL")
+        words = ["..." if part is ... else next(letters) if part is None else str(part) for part in shape]
+        wanted = f"({', '.join(words)}{',' * (len(words) == 1)})"
+        raise ValueError(f"{name} must have shape {wanted}, got {values.shape}")
+    if finite and not np.isfinite(values).all():
+        raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)].flat[0]:g} in it")
+    return values
+
+
+def text(name: str, value: str) -> str:
+    """Refuse what isn't text."""
+    if not isinstance(value, str):
+        raise ValueError(f"{name} must be text, got {value!r:.60}")
+    return value
+
+
+def path(name: str, value: str | Path) -> Path:
+    """The name of a file as a path; a number would be a file that is open already."""
+    if not isinstance(value, str | Path):
+        raise ValueError(f"{name} must be the name of a file, got {value!r:.60}")
+    return Path(value)
+
+
+def function(name: str, value: Any, how: str = "") -> Any:
+    """Refuse what can't be called, and a class, which makes something else; `how` says how it is called."""
+    if not callable(value) or isinstance(value, type):
+        raise ValueError(f"{name} must be a function{f', called as {how}' * bool(how)}, got {value!r:.60}")
+    return value
+
+
+def several(name: str, values: Any, kind: type, *, least: int = 1) -> list[Any]:
+    """A list of things of a kind; one of them alone is refused, and too few."""
+    if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
+        raise ValueError(f"{name} must be a list of {kind.__name__}, got {type(values).__name__}")
+    things = list(values)
+    for number, thing in enumerate(things):
+        instance(f"{name}[{number}]", thing, kind)
+    if len(things) < least:
+        raise ValueError(f"{name} must hold at least {least} {kind.__name__}, got {len(things)}")
+    return things
+
+
+def by_name(name: str, values: Any, kind: type | None = None, *, least: int = 1) -> dict[str, Any]:
+    """Things by name, all of a kind if one is said."""
+    what = "something" if kind is None else kind.__name__
+    if not isinstance(values, Mapping):
+        raise ValueError(f"{name} must be {what} by name, as in {{'A*': ...}}, got {type(values).__name__}")
+    for key, thing in values.items():
+        text(f"the names of {name}", key)
+        if kind is not None:
+            instance(f"{name}[{key!r}]", thing, kind)
+    if len(values) < least:
+        raise ValueError(f"{name} must hold at least {least}, got {len(values)}")
+    return dict(values)
+
+
 def vectors(**named: npt.ArrayLike) -> list[np.ndarray]:
     """The arguments as float arrays (..., D), all finite and with the same D, 2 or 3."""
     arrays = {name: numbers(name, value) for name, value in named.items()}
@@ -161,7 +226,8 @@ def instance(name: str, value: object, kind: type) -> None:
     if not isinstance(value, kind):
         article = "an" if kind.__name__.startswith("A") else "a"
         raise ValueError(
-            f"{name} must be {article} {kind.__name__}, got {type(value).__name__}: {MAKERS[kind.__name__]}"
+            f"{name} must be {article} {kind.__name__}, got {type(value).__name__}"
+            + (f": {MAKERS[kind.__name__]}" if kind.__name__ in MAKERS else "")
         )
 
 
