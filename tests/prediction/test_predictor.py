@@ -12,7 +12,7 @@ import xgboost
 
 from uavlab.prediction import FEATURES, OffsetPredictor, make_dataset, offset_class
 from uavlab.prediction.predictor import ATTRIBUTE
-from uavlab.prediction.requirements import require
+from uavlab.requirements import require
 from uavlab.weather import Weather
 
 
