@@ -41,6 +41,10 @@ class Power(NamedTuple):
     battery: np.ndarray
     """All of it over the efficiency of the drive; at least 0: what a fast descent would give back is lost."""
 
+    def __repr__(self) -> str:
+        spans = [f"{np.min(part):.1f}" + f" to {np.max(part):.1f}" * (np.size(part) > 1) for part in self]
+        return f"<Power: {', '.join(f'{name} {span}' for name, span in zip(self._fields, spans, strict=True))} W>"
+
 
 @compiled
 def induced_velocity(hover, through, across):

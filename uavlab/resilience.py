@@ -226,6 +226,9 @@ class ConditionCheck:
         checks.number("release", self.release)
         checks.share("release", self.release)
 
+    def __repr__(self) -> str:
+        return f"<ConditionCheck: {self.boundary:g} m now, {self.predicted:g} m predicted, changes: {len(self.log)}>"
+
     @property
     def boundary(self) -> float:
         return float(self.predicted + self.steps * self.step)
@@ -329,6 +332,12 @@ class Monitor:
             raise ValueError("level is 'grounded': there is no flight to watch; wait, or carry less")
         if self.level == "advanced":
             self.controller = ADVANCED
+
+    def __repr__(self) -> str:
+        return (
+            f"<Monitor: {self.controller.name} controller, level {self.level}, boundary {self.check.boundary:g} m, "
+            f"switches: {len(self.log)}>"
+        )
 
     def observe(self, time: float, offset: float, clearance: float) -> Controller:
         """Take what is observed at a time [s], and return the controller for the next moment.

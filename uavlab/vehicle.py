@@ -126,6 +126,12 @@ class UAV:
                 f"({self.weight:.1f} N): carry less"
             )
 
+    def __repr__(self) -> str:
+        return (
+            f"<UAV {self.name}: {self.mass:g} kg with {self.payload:g} kg of payload, "
+            f"thrust {self.thrust:g} N, {self.diameter:g} m across, cruise {self.cruise_speed:g} m/s>"
+        )
+
     @property
     def weight(self) -> float:
         """Weight with payload, G_uav + G_s [N]."""
@@ -200,6 +206,10 @@ class DataSheet(NamedTuple):
     """[J]"""
     rotor_diameter: float
     """Of each of its four rotors [m]."""
+
+    def __repr__(self) -> str:
+        limits = f"wind {self.wind:g} m/s, top speed {self.top_speed:g} m/s, {self.endurance / 60:.0f} min"
+        return f"<DataSheet {self.name}: {self.mass:g} kg, {limits}>"
 
 
 DATA_SHEETS = (

@@ -59,6 +59,11 @@ class JointOffset:
         if not -1 < self.correlation < 1:
             raise ValueError(f"correlation must be between -1 and 1, without the ends, got {self.correlation!r}")
 
+    def __repr__(self) -> str:
+        (one, two), (first, second) = self.mean, self.sigma
+        means, sigmas = f"μ = ({one:.3g}, {two:.3g}) m", f"σ = ({first:.3g}, {second:.3g}) m"
+        return f"<JointOffset: {means}, {sigmas}, ρ = {self.correlation:.3g}>"
+
     @classmethod
     def fit(cls, samples: npt.ArrayLike) -> JointOffset:
         """The model with the means, standard deviations (n − 1) and correlation of samples (N, 2) [m], N at least 3.
@@ -154,6 +159,10 @@ class SafetyDomain:
     radius: float
     in_ellipse: float
     in_circle: float
+
+    def __repr__(self) -> str:
+        held = f"{self.in_ellipse:.2%} of the offsets in the ellipse, {self.in_circle:.2%} within {self.radius:.2f} m"
+        return f"<SafetyDomain for {self.coverage:.2%}: {held}>"
 
 
 def safety_domain(

@@ -74,6 +74,10 @@ class Filtered(NamedTuple):
     sigma: float
     rounds: int
 
+    def __repr__(self) -> str:
+        counts = f"{self.kept.sum()} of {len(self.kept)} samples kept"
+        return f"<Filtered: {counts}, rounds: {self.rounds}, mean {self.mean:.3f} m, σ {self.sigma:.3f} m>"
+
 
 def pauta_filter(samples: npt.ArrayLike, radius_in_sigma: float = 3.0) -> Filtered:
     """Remove gross errors: samples farther than 3σ from the mean, again and again until none is left.

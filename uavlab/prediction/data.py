@@ -101,6 +101,11 @@ class Dataset:
     train: np.ndarray
     setting: Setting
 
+    def __repr__(self) -> str:
+        return (
+            f"<Dataset: {len(self.train)} rows in {self.class_count} classes, {self.train.sum()} of them to learn from>"
+        )
+
     @property
     def test(self) -> np.ndarray:
         """Rows for the test, (N,) bool."""

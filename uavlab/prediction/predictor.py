@@ -94,6 +94,11 @@ class OffsetPredictor:
         if not 0.5 <= self.quantile < 1:
             raise ValueError(f"quantile must be from 0.5 to below 1, got {self.quantile!r}")
 
+    def __repr__(self) -> str:
+        state = "not fitted" if self.training is None else "fitted"
+        counts = f"{len(self.features)} features, {self.class_count} classes, quantile {self.quantile:g}"
+        return f"<OffsetPredictor: {counts}, {state}>"
+
     def fit(self, features: Any, offsets: npt.ArrayLike, *, drop_nan: bool = False) -> OffsetPredictor:
         """A predictor that has learned from these flights.
 

@@ -79,6 +79,12 @@ class Weather:
             checks.not_negative(name, getattr(self, name))
         checks.within("wind_from_deg", self.wind_from_deg, 0.0, 360.0, "degrees")
 
+    def __repr__(self) -> str:
+        mean, gust = self.reference_wind
+        air = f"{self.temperature_c:.3g} °C, {self.humidity_percent:.3g} %, {self.pressure_hpa:.0f} hPa"
+        wind = f"wind {mean:.3g} m/s from {self.wind_from_deg:.0f}°, gusts {gust:.3g} m/s"
+        return f"<Weather: {air}, {wind}, rain {self.rain_mm_per_h:.3g} mm/h>"
+
     @property
     def air_density(self) -> float:
         """Density of the moist air [kg/m³]."""

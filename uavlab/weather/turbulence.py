@@ -37,6 +37,10 @@ class DrydenParameters(NamedTuple):
     scale_lengths: np.ndarray
     deviations: np.ndarray
 
+    def __repr__(self) -> str:
+        lengths, deviations = (", ".join(f"{value:.2f}" for value in axes) for axes in self)
+        return f"<DrydenParameters: scale lengths {lengths} m, deviations {deviations} m/s>"
+
 
 def dryden_parameters(altitude: float, wind_at_6m: float) -> DrydenParameters:
     """How long and how strong gusts are near the ground, MIL-F-8785C 3.7.3.

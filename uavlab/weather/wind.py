@@ -61,6 +61,13 @@ class Wind:
         if self.gusts == "dryden" and not any(self.mean[:2]):
             raise ValueError("mean is calm, and Dryden gusts take their strength from it: give a wind, or other gusts")
 
+    def __repr__(self) -> str:
+        east, north, up = self.mean
+        gusts = {"none": "no gusts", "dryden": "Dryden gusts"}.get(
+            self.gusts, f"{self.gusts} gusts with σ = {self.deviation:.3g} m/s and τ = {self.correlation:.3g} s"
+        )
+        return f"<Wind: mean ({east:.3g}, {north:.3g}, {up:.3g}) m/s, {gusts}, rain {self.rain_mm_per_h:.3g} mm/h>"
+
     @classmethod
     def from_weather(cls, weather: Weather, gusts: str = "ou", correlation: float = 1.0) -> Wind:
         """The wind of a state of the weather; its strongest gust counts as 3σ above the mean."""
