@@ -30,7 +30,19 @@ NEWTON = 12
 
 
 class Power(NamedTuple):
-    """What the power of a flight is spent on [W]; each a number, or an array."""
+    """What the power of a flight is spent on [W]; each a number, or an array.
+
+    See Also
+    --------
+    power_needed : makes it.
+
+    Examples
+    --------
+    >>> from uavlab.power import power_needed
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> power_needed(LIGHT_QUADROTOR, velocity=(0.0, 0.0, 0.0))
+    <Power: induced 92.7, profile 41.7, useful 0.0, battery 179.2 W>
+    """
 
     induced: np.ndarray
     """On pushing air down."""
@@ -40,6 +52,10 @@ class Power(NamedTuple):
     """Thrust times the speed of the UAV through the air: climb and drag of the body. Negative in descent."""
     battery: np.ndarray
     """All of it over the efficiency of the drive; at least 0: what a fast descent would give back is lost."""
+
+    def __repr__(self) -> str:
+        spans = [f"{np.min(part):.1f}" + f" to {np.max(part):.1f}" * (np.size(part) > 1) for part in self]
+        return f"<Power: {', '.join(f'{name} {span}' for name, span in zip(self._fields, spans, strict=True))} W>"
 
 
 @compiled
@@ -61,6 +77,24 @@ def induced_velocity(hover, through, across):
     -------
     float
         w [m/s].
+
+    See Also
+    --------
+    rotor_power : the power that it costs.
+
+    References
+    ----------
+    H. Glauert, A General Theory of the Autogyro, Aeronautical Research Committee, Reports and Memoranda 1111, 1926.
+
+    J. G. Leishman, Principles of Helicopter Aerodynamics, 2006.
+
+    Examples
+    --------
+    >>> from uavlab.power import induced_velocity
+    >>> [round(induced_velocity(5.0, 0.0, across), 2) for across in (0.0, 5.0, 20.0)]  # less in forward flight
+    [5.0, 3.93, 1.25]
+    >>> [round(induced_velocity(5.0, through, 0.0), 2) for through in (-5.0, 0.0, 5.0)]  # less in climb
+    [8.09, 5.0, 3.09]
     """
     low, high = 0.0, hover + max(-through, 0.0)
     induced = high
@@ -84,14 +118,72 @@ def induced_velocity(hover, through, across):
 
 @compiled
 def rotor_power(thrust, hover, through, across, profile):
-    """Induced, profile and useful power of rotors [W]; `profile` is the share of the ideal hover power."""
+    """Induced, profile and useful power of rotors.
+
+    P_i = κ T w, P_0 = p T w_h (1 + c/2 · 4.65 (V_∥/w_h)²), P_u = T V_n, with w of `induced_velocity`, κ = 1.15 and the
+    blade loading c = 0.012
+
+    Parameters
+    ----------
+    thrust : float
+        T [N], at least 0.
+    hover, through, across : float
+        w_h, V_n and V_∥ [m/s] as for `induced_velocity`.
+    profile : float
+        p, share of the ideal hover power, `profile_share`.
+
+    Returns
+    -------
+    induced, profile, useful : float
+        [W]
+
+    See Also
+    --------
+    power_needed : of a UAV that moves through wind.
+
+    References
+    ----------
+    J. G. Leishman, Principles of Helicopter Aerodynamics, 2006, 5.4.
+
+    Examples
+    --------
+    >>> from uavlab.power import rotor_power
+    >>> [round(part, 1) for part in rotor_power(15.0, 5.0, 0.0, 0.0, 0.5)]
+    [86.2, 37.5, 0.0]
+    >>> [round(part, 1) for part in rotor_power(15.0, 5.0, 0.0, 12.0, 0.5)]
+    [35.4, 43.5, 0.0]
+    """
     induced = INDUCED * thrust * induced_velocity(hover, through, across)
     advance = 0.0 if hover == 0 else BLADE_LOADING / 2 * (across / hover) ** 2
     return induced, profile * thrust * hover * (1 + ADVANCE * advance), thrust * through
 
 
 def profile_share(uav: UAV) -> float:
-    """What the drag of the blades takes in hover, over the ideal power: what the figure of merit leaves for it."""
+    """What the drag of the blades takes in hover, over the ideal power: what the figure of merit leaves for it.
+
+    p = 1/FM − κ, κ = 1.15
+
+    Parameters
+    ----------
+    uav : UAV
+        With its `figure_of_merit` FM.
+
+    Returns
+    -------
+    float
+        p, above 0.
+
+    See Also
+    --------
+    rotor_power : takes it.
+
+    Examples
+    --------
+    >>> from uavlab.power import profile_share
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> round(profile_share(LIGHT_QUADROTOR), 2)
+    0.52
+    """
     return 1 / uav.figure_of_merit - INDUCED
 
 
@@ -111,12 +203,13 @@ def power_needed(
     Parameters
     ----------
     uav : UAV
+        With its payload.
     velocity : (..., 3) or (..., 2) array
         Over ground [m/s].
     wind : (2,) or (3,) array
         Where the air moves to [m/s].
     rain_mm_per_h : float
-        [mm/h]
+        Rain rate [mm/h], at least 0.
     air_density : float
         ρ [kg/m³], above 0.
 
@@ -128,7 +221,27 @@ def power_needed(
     Raises
     ------
     ValueError
-        If an argument is not finite or has another shape.
+        If `uav` is no UAV, `velocity` or `wind` is not made of two or three finite numbers, `rain_mm_per_h` is
+        negative, or `air_density` is not above 0.
+
+    See Also
+    --------
+    energy_per_metre : the same for a metre of way.
+    uavlab.vehicle.UAV.hover_power : in hover, in closed form.
+
+    References
+    ----------
+    H. Glauert, A General Theory of the Autogyro, Aeronautical Research Committee, Reports and Memoranda 1111, 1926.
+
+    J. G. Leishman, Principles of Helicopter Aerodynamics, 2006.
+
+    Examples
+    --------
+    >>> from uavlab.power import power_needed
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> velocities = [(speed, 0.0, 0.0) for speed in (0.0, 5.0, 10.0, 15.0)]
+    >>> power_needed(LIGHT_QUADROTOR, velocities).battery.round()  # hovering isn't the cheapest
+    array([179., 162., 177., 298.])
     """
     checks.instance("uav", uav, UAV)
     checks.positive_number("air_density", air_density)
@@ -163,8 +276,9 @@ def energy_per_metre(
     Parameters
     ----------
     uav : UAV
+        With its payload.
     direction : (..., 3) array
-        Any length but 0.
+        To fly in, any length but 0.
     wind, rain_mm_per_h, air_density
         As for `power_needed`.
     speed : float, optional
@@ -178,7 +292,22 @@ def energy_per_metre(
     Raises
     ------
     ValueError
-        If a direction has no length, or an argument is out of its range.
+        If `uav` is no UAV, `direction` is not of shape (..., 3), not finite or of length 0, `speed` or `air_density` is
+        not above 0, `rain_mm_per_h` is negative, or `wind` is not two or three finite numbers.
+
+    See Also
+    --------
+    power_needed : the power P.
+    uavlab.weather.ground_speed_held : the speed v.
+    uavlab.planners.least_energy : the route that takes the least.
+
+    Examples
+    --------
+    >>> from uavlab.power import energy_per_metre
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> ways = [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)]  # with the wind, against it, up
+    >>> energy_per_metre(LIGHT_QUADROTOR, ways, wind=(12.0, 0.0)).round()
+    array([32., 77., 71.])
     """
     checks.instance("uav", uav, UAV)
     asked = uav.cruise_speed if speed is None else speed

@@ -45,7 +45,9 @@ def resilience_level(load: str, disturbance: str) -> str:
     Parameters
     ----------
     load : {"dead", "light", "moderate", "heavy"}
+        Class of the payload, `load_class`.
     disturbance : {"none", "mild", "moderate", "heavy"}
+        Class of the mean wind, `disturbance_class`.
 
     Returns
     -------
@@ -56,7 +58,18 @@ def resilience_level(load: str, disturbance: str) -> str:
     Raises
     ------
     ValueError
-        If a class is unknown.
+        If `load` or `disturbance` is none of the classes.
+
+    See Also
+    --------
+    safe_distance : how far to keep from walls.
+    uavlab.weather.grounded_by : what grounds a UAV by its own limits.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import DISTURBANCES, resilience_level
+    >>> [resilience_level("moderate", disturbance) for disturbance in DISTURBANCES]
+    ['lower', 'intermediate', 'advanced', 'grounded']
     """
     return TABLE3[checks.one_of("disturbance", disturbance, DISTURBANCES)][
         list(LOADS).index(checks.one_of("load", load, LOADS))
@@ -91,7 +104,22 @@ def safe_distance(
     Raises
     ------
     ValueError
-        If a class or reading is unknown, or the load can't be lifted.
+        If `load`, `disturbance` or `reading` is none of the classes, or `load` is negative, above 1 kg for "table", or
+        more than `uav` can lift.
+
+    See Also
+    --------
+    uavlab.offsets.minimum_safe_distance : the equation, REPARE Eq. 7.
+    gust_offset : ξ of the physical reading.
+    resilience_level : how much of the system is switched on.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import safe_distance
+    >>> [safe_distance(*case) for case in (("light", "mild"), ("moderate", "moderate"), ("heavy", "moderate"))]
+    [3.5, 5.0, 5.5]
+    >>> [safe_distance(1.0, "moderate", reading=reading) for reading in ("table", "physical")]
+    [5.5, 5.5]
     """
     checks.one_of("reading", reading, ("table", "physical"))
     payload = payload_of(load)
@@ -107,14 +135,69 @@ def safe_distance(
 
 
 def payload_of(load: str | float) -> float:
-    """The payload [kg] of a class of load, or itself."""
+    """The payload of a class of load, or itself.
+
+    Parameters
+    ----------
+    load : {"dead", "light", "moderate", "heavy"} or float
+        Class, or payload [kg].
+
+    Returns
+    -------
+    float
+        [kg]; of a class the heaviest that it covers.
+
+    Raises
+    ------
+    ValueError
+        If `load` is none of the classes, negative or not finite.
+
+    See Also
+    --------
+    load_class : the way back.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import payload_of
+    >>> payload_of("moderate"), payload_of(0.4)
+    (0.6, 0.4)
+    """
     if isinstance(load, str):
         return LOADS[checks.one_of("load", load, LOADS)]
     return checks.not_negative_number("load", load)
 
 
 def kind_and_speed(disturbance: str | Wind | Weather, name: str = "disturbance") -> tuple[str, float]:
-    """Class of a disturbance and its mean wind [m/s]; of a class the strongest that it covers."""
+    """Class of a disturbance and its mean wind.
+
+    Parameters
+    ----------
+    disturbance : {"none", "mild", "moderate", "heavy"}, Wind or Weather
+        Class, or what the air does.
+    name : str
+        Of the argument, for the message.
+
+    Returns
+    -------
+    (str, float)
+        Class, and mean wind [m/s]; of a class the strongest that it covers.
+
+    Raises
+    ------
+    ValueError
+        If `disturbance` is none of the classes, and no Wind or Weather.
+
+    See Also
+    --------
+    disturbance_class : from a speed.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import kind_and_speed
+    >>> from uavlab.weather import Wind
+    >>> kind_and_speed("mild"), kind_and_speed(Wind(mean=(3.0, 4.0)))
+    (('mild', 6.0), ('mild', 5.0))
+    """
     if isinstance(disturbance, str):
         return checks.one_of(name, disturbance, DISTURBANCES), DISTURBANCES[disturbance]
     if not isinstance(disturbance, Wind | Weather):
@@ -126,29 +209,108 @@ def kind_and_speed(disturbance: str | Wind | Weather, name: str = "disturbance")
 
 
 def gust_offset(uav: UAV, wind_speed: float) -> float:
-    """Offset ξ₀ + 8.5 m·F_gust/reserve [m] of a UAV in a mean wind [m/s], before it is rounded up.
+    """Offset of a UAV in a mean wind, before it is rounded up.
+
+    ξ = ξ₀ + 8.5 m · F_gust/R, ξ₀ = 1 m, R the horizontal reserve of the thrust
+
+    Parameters
+    ----------
+    uav : UAV
+        With its payload.
+    wind_speed : float
+        Mean wind [m/s], at least 0.
+
+    Returns
+    -------
+    float
+        ξ [m].
 
     Raises
     ------
     ValueError
-        If the wind is negative or not finite.
+        If `wind_speed` is negative or not finite.
+
+    See Also
+    --------
+    gust_force : F_gust.
+    safe_distance : D_min with it.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import gust_offset
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> [round(gust_offset(LIGHT_QUADROTOR.loaded(payload), 7.5), 1) for payload in (0.0, 0.6, 1.0)]
+    [3.3, 3.8, 5.0]
     """
     checks.not_negative_number("wind_speed", wind_speed)
     return float(STILL_OFFSET + STIFFNESS * gust_force(uav, wind_speed) / uav.horizontal_reserve())
 
 
 def gust_force(uav: UAV, wind_speed: float) -> float:
-    """Drag of the strongest gusts on a UAV that holds its place in a mean wind [m/s], in newtons."""
-    return float(wind_drag((GUST_FACTOR * wind_speed, 0.0), (0.0, 0.0), uav.drag_area)[0])
+    """Drag of the strongest gusts on a UAV that holds its place in a mean wind.
 
+    F = ½ ρ C S (1.75 W)²: REPARE Eq. 5 at the gust of Eq. 3.
 
-def load_class(payload: float) -> str:
-    """The lightest class of load that covers a payload [kg].
+    Parameters
+    ----------
+    uav : UAV
+        With its drag area.
+    wind_speed : float
+        Mean wind W [m/s], at least 0.
+
+    Returns
+    -------
+    float
+        F [N].
 
     Raises
     ------
     ValueError
-        If the payload is negative, or heavier than the heaviest class.
+        If `wind_speed` is not finite.
+
+    See Also
+    --------
+    uavlab.weather.wind_drag : the drag.
+    gust_offset : how far it pushes.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import gust_force
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> [round(gust_force(LIGHT_QUADROTOR, wind), 1) for wind in (3.0, 6.0)]
+    [1.0, 4.1]
+    """
+    return float(wind_drag((GUST_FACTOR * wind_speed, 0.0), (0.0, 0.0), uav.drag_area)[0])
+
+
+def load_class(payload: float) -> str:
+    """The lightest class of load that covers a payload.
+
+    Parameters
+    ----------
+    payload : float
+        [kg], 0 to 1.
+
+    Returns
+    -------
+    str
+        "dead", "light", "moderate" or "heavy".
+
+    Raises
+    ------
+    ValueError
+        If `payload` is negative, not finite, or heavier than the heaviest class.
+
+    See Also
+    --------
+    payload_of : the way back.
+    resilience_level : what follows from it.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import load_class
+    >>> [load_class(payload) for payload in (0.0, 0.25, 0.3, 1.0)]
+    ['dead', 'light', 'moderate', 'heavy']
     """
     checks.not_negative_number("payload", payload)
     name = next((name for name, upper in LOADS.items() if payload <= upper), None)
@@ -158,19 +320,53 @@ def load_class(payload: float) -> str:
 
 
 def disturbance_class(wind_speed: float) -> str:
-    """The mildest class of disturbance that covers a mean wind [m/s]; "heavy" for any stronger one.
+    """The mildest class of disturbance that covers a mean wind.
+
+    Parameters
+    ----------
+    wind_speed : float
+        Mean wind [m/s], at least 0.
+
+    Returns
+    -------
+    str
+        "none", "mild", "moderate" or "heavy"; "heavy" for any stronger wind.
 
     Raises
     ------
     ValueError
-        If the wind is negative or not a number.
+        If `wind_speed` is negative or not finite.
+
+    See Also
+    --------
+    resilience_level : what follows from it.
+    uavlab.weather.reference_wind : the mean wind of a forecast and a measurement.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import disturbance_class
+    >>> [disturbance_class(wind) for wind in (1.0, 5.0, 7.5, 20.0)]
+    ['none', 'mild', 'moderate', 'heavy']
     """
     checks.not_negative_number("wind_speed", wind_speed)
     return next((name for name, upper in DISTURBANCES.items() if wind_speed <= upper), "heavy")
 
 
 class Change(NamedTuple):
-    """An entry of a log."""
+    """An entry of a log.
+
+    See Also
+    --------
+    ConditionCheck, Monitor : keep lists of them.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import ConditionCheck
+    >>> check = ConditionCheck(predicted=2.0)
+    >>> _ = check.observe(12.0, 2.3)
+    >>> check.log
+    [Change(time=12.0, value=2.5, reason='an offset of 2.30 m exceeds 2 m')]
+    """
 
     time: float
     """When [s]."""
@@ -208,7 +404,22 @@ class ConditionCheck:
     Raises
     ------
     ValueError
-        If a parameter is out of its range.
+        If `predicted`, `step` or `hold` is not above 0, or `release` is not between 0 and 1, without the ends.
+
+    See Also
+    --------
+    ConditionCheck.observe : takes an offset.
+    Monitor : chooses a controller by it.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import ConditionCheck
+    >>> check = ConditionCheck(predicted=2.0, hold=20.0)
+    >>> seen = ((0.0, 1.0), (1.0, 2.7), (10.0, 0.5), (21.0, 0.4), (41.0, 0.3))
+    >>> [check.observe(time, offset) for time, offset in seen]
+    [2.0, 3.0, 3.0, 2.5, 2.0]
+    >>> check
+    <ConditionCheck: 2 m now, 2 m predicted, changes: 3>
     """
 
     predicted: float
@@ -226,17 +437,45 @@ class ConditionCheck:
         checks.number("release", self.release)
         checks.share("release", self.release)
 
+    def __repr__(self) -> str:
+        return f"<ConditionCheck: {self.boundary:g} m now, {self.predicted:g} m predicted, changes: {len(self.log)}>"
+
     @property
     def boundary(self) -> float:
         return float(self.predicted + self.steps * self.step)
 
     def observe(self, time: float, offset: float) -> float:
-        """Take an offset [m] observed at a time [s], and return the boundary that holds from now on [m].
+        """Take an offset that is observed, and return the boundary that holds from now on.
+
+        Parameters
+        ----------
+        time : float
+            [s], not before the last one.
+        offset : float
+            From the route [m], at least 0.
+
+        Returns
+        -------
+        float
+            ξ [m], `predicted` or some steps more.
 
         Raises
         ------
         ValueError
-            If the offset is negative or not finite, or the time before the last one.
+            If `offset` is negative or not finite, or `time` is not finite or before the last one.
+
+        See Also
+        --------
+        Monitor.observe : passes it on.
+
+        Examples
+        --------
+        >>> from uavlab.resilience import ConditionCheck
+        >>> check = ConditionCheck(predicted=2.0, step=0.5)
+        >>> check.observe(0.0, 1.9), check.observe(1.0, 2.1), check.observe(2.0, 3.4)
+        (2.0, 2.5, 3.5)
+        >>> check.log[-1].reason
+        'an offset of 3.40 m exceeds 2.5 m'
         """
         checks.not_negative_number("offset", offset)
         checks.number("time", time)
@@ -254,13 +493,53 @@ class ConditionCheck:
         return self.boundary
 
     def change(self, time: float, steps: int, reason: str) -> None:
+        """Set how many steps the boundary is raised by, and log it; `observe` calls this.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+        steps : int
+            At least 0.
+        reason : str
+            For the log.
+
+        Returns
+        -------
+        None
+
+        See Also
+        --------
+        ConditionCheck.observe : decides on it.
+
+        Examples
+        --------
+        >>> from uavlab.resilience import ConditionCheck
+        >>> check = ConditionCheck(predicted=2.0, step=0.5)
+        >>> check.change(0.0, 2, "a storm is forecast")
+        >>> check.boundary
+        3.0
+        """
         self.steps = steps
         self.calm_since = time
         self.log.append(Change(time, self.boundary, reason))
 
 
 class Controller(NamedTuple):
-    """How the UAV is flown."""
+    """How the UAV is flown.
+
+    See Also
+    --------
+    Monitor : chooses between `BASIC` and `ADVANCED`.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import ADVANCED, BASIC
+    >>> BASIC
+    Controller(name='basic', speed_share=1.0, natural_frequency=1.0, tilt_share=1.0)
+    >>> ADVANCED
+    Controller(name='advanced', speed_share=0.5, natural_frequency=1.6, tilt_share=0.8)
+    """
 
     name: str
     speed_share: float
@@ -277,7 +556,30 @@ ADVANCED = Controller("advanced", 0.5, 1.6, 0.8)
 
 
 def basic_offset(controller: Controller) -> float:
-    """How many metres the basic controller would be off where another is off by one, in white gusts."""
+    """How many metres the basic controller would be off where another is off by one, in white gusts.
+
+    (ω_n/ω_basic)^(3/2)
+
+    Parameters
+    ----------
+    controller : Controller
+        The other one.
+
+    Returns
+    -------
+    float
+        1 for the basic one.
+
+    See Also
+    --------
+    Monitor.observe : counts offsets with it.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import ADVANCED, BASIC, basic_offset
+    >>> basic_offset(BASIC), round(basic_offset(ADVANCED), 2)
+    (1.0, 2.02)
+    """
     return (controller.natural_frequency / BASIC.natural_frequency) ** 1.5
 
 
@@ -293,8 +595,9 @@ class Monitor:
     Attributes
     ----------
     check : ConditionCheck
+        Of the offsets.
     uav_diameter : float
-        [m], above 0.
+        D_uav [m], above 0.
     level : str
         One of `LEVELS`; "advanced" keeps the advanced controller on, "off" the basic one, "grounded" is refused.
     spare : float
@@ -309,7 +612,22 @@ class Monitor:
     Raises
     ------
     ValueError
-        If a parameter is out of its range, or the level is "grounded".
+        If `uav_diameter`, `spare` or `hold` is not above 0, or `level` is none of `LEVELS` or "grounded".
+
+    See Also
+    --------
+    Monitor.observe : takes what is observed.
+    uavlab.flight.Autopilot : flies with a monitor.
+
+    Examples
+    --------
+    >>> from uavlab.resilience import ConditionCheck, Monitor
+    >>> monitor = Monitor(ConditionCheck(predicted=2.0), uav_diameter=1.0)
+    >>> clearances = {0.0: 5.0, 1.0: 2.0, 2.0: 5.0, 9.0: 5.0}  # by time: a wall is near for a second
+    >>> [monitor.observe(time, 1.0, clearance).name for time, clearance in clearances.items()]
+    ['basic', 'advanced', 'advanced', 'basic']
+    >>> monitor
+    <Monitor: basic controller, level lower, boundary 2.5 m, switches: 2>
     """
 
     check: ConditionCheck
@@ -330,6 +648,12 @@ class Monitor:
         if self.level == "advanced":
             self.controller = ADVANCED
 
+    def __repr__(self) -> str:
+        return (
+            f"<Monitor: {self.controller.name} controller, level {self.level}, boundary {self.check.boundary:g} m, "
+            f"switches: {len(self.log)}>"
+        )
+
     def observe(self, time: float, offset: float, clearance: float) -> Controller:
         """Take what is observed at a time [s], and return the controller for the next moment.
 
@@ -343,10 +667,29 @@ class Monitor:
             Of the route where the UAV is [m], at least 0; infinite where there is no wall. That of the UAV would
             count the offset twice.
 
+        Returns
+        -------
+        Controller
+            `BASIC` or `ADVANCED`.
+
         Raises
         ------
         ValueError
-            If an observation is negative or not a number, or the time before the last one.
+            If `offset` is negative or not finite, `clearance` is negative or NaN, or `time` is not finite or before the
+            last one.
+
+        See Also
+        --------
+        ConditionCheck.observe : the boundary that is compared with the clearance.
+
+        Examples
+        --------
+        >>> from uavlab.resilience import ConditionCheck, Monitor
+        >>> monitor = Monitor(ConditionCheck(predicted=2.0), uav_diameter=1.0)
+        >>> monitor.observe(0.0, offset=3.2, clearance=3.5)  # 3.5 m of boundary and half the body don't fit
+        Controller(name='advanced', speed_share=0.5, natural_frequency=1.6, tilt_share=0.8)
+        >>> monitor.log[-1].reason
+        '0.50 m short of the distance to keep'
         """
         checks.number("clearance", clearance)
         if not clearance >= 0:
@@ -367,5 +710,32 @@ class Monitor:
         return self.controller
 
     def switch(self, time: float, controller: Controller, reason: str) -> None:
+        """Change to another controller, and log it; `observe` calls this.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+        controller : Controller
+            The one that flies from now on.
+        reason : str
+            For the log.
+
+        Returns
+        -------
+        None
+
+        See Also
+        --------
+        Monitor.observe : decides on it.
+
+        Examples
+        --------
+        >>> from uavlab.resilience import ADVANCED, ConditionCheck, Monitor
+        >>> monitor = Monitor(ConditionCheck(predicted=2.0), uav_diameter=1.0)
+        >>> monitor.switch(3.0, ADVANCED, "asked by the pilot")
+        >>> monitor.log
+        [Change(time=3.0, value='advanced', reason='asked by the pilot')]
+        """
         self.controller = controller
         self.log.append(Change(time, controller.name, reason))

@@ -41,7 +41,24 @@ def share_interval(count: int, total: int) -> tuple[float, float]:
     Raises
     ------
     ValueError
-        If there are no trials, or more events than trials.
+        If `total` is no whole number of at least 1, or `count` is none from 0 to `total`.
+
+    See Also
+    --------
+    grouped_share_interval : where trials come in groups that resemble each other.
+
+    References
+    ----------
+    C. J. Clopper and E. S. Pearson, The Use of Confidence or Fiducial Limits Illustrated in the Case of the Binomial,
+    Biometrika, 1934.
+
+    Examples
+    --------
+    >>> from uavlab.statistics import share_interval
+    >>> [round(end, 3) for end in share_interval(0, 100)]  # no crash in 100 flights
+    [0.0, 0.036]
+    >>> [round(end, 3) for end in share_interval(50, 100)]
+    [0.398, 0.602]
     """
     from scipy.stats import beta
 
@@ -77,7 +94,26 @@ def grouped_share_interval(counts: npt.ArrayLike, trials: int) -> tuple[float, f
     Raises
     ------
     ValueError
-        If there are no groups, or a count isn't a whole number from 0 to `trials`.
+        If `trials` is no whole number of at least 1, `counts` is not of shape (M,) with at least one group, or a count
+        is no whole number from 0 to `trials`.
+
+    See Also
+    --------
+    share_interval : for independent trials.
+    share_over_maps : by resampling alone.
+
+    References
+    ----------
+    J. G. Skellam, A Probability Distribution Derived from the Binomial Distribution by Regarding the Probability of
+    Success as Variable between the Sets of Trials, Journal of the Royal Statistical Society B, 1948.
+
+    Examples
+    --------
+    >>> from uavlab.statistics import grouped_share_interval, share_interval
+    >>> [round(end, 2) for end in grouped_share_interval([20, 0, 0, 0, 0], trials=20)]  # all on one of five routes
+    [0.0, 0.6]
+    >>> [round(end, 2) for end in share_interval(20, 100)]
+    [0.13, 0.29]
     """
     checks.whole("trials", trials, least=1)
     events = checks.numbers("counts", counts)
@@ -99,12 +135,67 @@ def grouped_share_interval(counts: npt.ArrayLike, trials: int) -> tuple[float, f
 
 
 def quantile(share: float, edges: np.ndarray, mass: np.ndarray) -> float:
-    """Below what a share of the mass (V,) between ascending edges (V + 1,) lies."""
+    """Below what a share of the mass (V,) between ascending edges (V + 1,) lies.
+
+    Parameters
+    ----------
+    share : float
+        0 to 1.
+    edges : (V + 1,) array
+        Ascending.
+    mass : (V,) array
+        Between the edges, at least 0; need not add up to 1.
+
+    Returns
+    -------
+    float
+        In the unit of the edges.
+
+    See Also
+    --------
+    likely_means : edges and masses.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.statistics import quantile
+    >>> quantile(0.75, np.array([0.0, 1.0, 3.0]), np.array([2.0, 2.0]))
+    2.0
+    """
     return float(np.interp(share, np.append(0.0, np.cumsum(mass) / mass.sum()), edges))
 
 
 def likely_means(events: np.ndarray, trials: int) -> tuple[np.ndarray, np.ndarray]:
-    """Edges (V + 1,) between means m of groups' shares, ascending, and the likelihood of each given the events (M,)."""
+    """Means m of groups' shares, and how likely each makes the events.
+
+    L(m) = Σ_ρ Π_groups B(a + k, b + n − k)/B(a, b), a = m (1/ρ − 1), b = (1 − m)(1/ρ − 1), B the beta function
+
+    Parameters
+    ----------
+    events : (M,) array
+        k, events in each group.
+    trials : int
+        n in each group, at least 1.
+
+    Returns
+    -------
+    edges : (V + 1,) array
+        Between the means, ascending.
+    likelihood : (V,) array
+        Between the edges, not normalised.
+
+    See Also
+    --------
+    grouped_share_interval : the interval that follows.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.statistics import likely_means
+    >>> edges, likelihood = likely_means(np.array([3.0, 2.0, 4.0, 3.0]), trials=10)
+    >>> f"{edges[likelihood.argmax()]:.1f}"
+    '0.3'
+    """
     small = np.geomspace(LEAST_MEAN, 0.1, MEANS)
     edges = np.concatenate([small, np.linspace(0.1, 0.9, MEANS)[1:-1], 1 - small[::-1]])
     mean = ((edges[:-1] + edges[1:]) / 2)[:, None]
@@ -117,7 +208,38 @@ def likely_means(events: np.ndarray, trials: int) -> tuple[np.ndarray, np.ndarra
 
 
 def over_maps(statistic: Callable[..., Any], values: np.ndarray) -> tuple[float, float]:
-    """95 % interval of a statistic of values (M, S), by resampling the maps (bootstrap)."""
+    """95 % interval of a statistic of values (M, S), by resampling the maps (bootstrap).
+
+    Parameters
+    ----------
+    statistic : callable
+        Of an array and an `axis`, as `numpy.mean` and `numpy.median`.
+    values : (M, S) array
+        S values on each of M maps.
+
+    Returns
+    -------
+    (float, float)
+        Of 2000 resamples, always the same ones.
+
+    See Also
+    --------
+    share_over_maps : for shares.
+
+    References
+    ----------
+    B. Efron, Bootstrap Methods: Another Look at the Jackknife, The Annals of Statistics, 1979.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.statistics import over_maps
+    >>> lengths = np.repeat(np.arange(20.0, 40.0), 50).reshape(20, 50)  # 50 routes on each map are alike
+    >>> [round(end) for end in over_maps(np.mean, lengths)]
+    [27, 32]
+    >>> [round(end) for end in over_maps(np.mean, lengths.reshape(1000, 1))]  # as if they were independent: too narrow
+    [29, 30]
+    """
     rng = np.random.default_rng(0)
     drawn = values[rng.integers(len(values), size=(RESAMPLES, len(values)))]
     low, high = np.quantile(statistic(drawn.reshape(RESAMPLES, -1), axis=1), [0.025, 0.975], method="nearest")
@@ -129,6 +251,28 @@ def share_over_maps(values: np.ndarray) -> tuple[float, float]:
 
     By resampling the maps; where all maps agree, so that this says nothing, that of as many independent trials as there
     are maps: 12 of 12 is [74 %, 100 %].
+
+    Parameters
+    ----------
+    values : (M, S) array
+        0 to 1, S on each of M maps.
+
+    Returns
+    -------
+    (float, float)
+        0 to 1.
+
+    See Also
+    --------
+    over_maps : for any statistic.
+    share_interval : for independent trials.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.statistics import share_over_maps
+    >>> [round(end, 2) for end in share_over_maps(np.ones((12, 5)))]  # all reached on 12 maps
+    [0.74, 1.0]
     """
     low, high = over_maps(np.mean, values)
     exact = share_interval(round(float(values.mean()) * len(values)), len(values))

@@ -28,6 +28,7 @@ def sweep(
     Parameters
     ----------
     function : callable
+        At the top of a module, if it is to run in other processes.
     cases : iterable of mappings
         Keyword arguments of each call.
     jobs : int, optional
@@ -45,10 +46,21 @@ def sweep(
     Raises
     ------
     ValueError
-        If `jobs` is 0 or no whole number, or cases share a random generator: what one of them draws would be missing
+        If `jobs` is 0 or no whole number, or `cases` share a random generator: what one of them draws would be missing
         in the next on one core, and not on two.
     Exception
-        What the function raises; a note says in which case.
+        What `function` raises; a note says in which case.
+
+    See Also
+    --------
+    uavlab.prediction.compare_models : a sweep over seeds.
+    uavlab.planners.compare_planners : one over planners and seeds.
+
+    Examples
+    --------
+    >>> from uavlab.sweep import sweep
+    >>> sweep(pow, [{"base": 2, "exp": exponent} for exponent in range(5)], progress=False)
+    [1, 2, 4, 8, 16]
     """
     if jobs is not None and (not isinstance(jobs, Integral) or jobs == 0):
         raise ValueError(f"jobs must be a number of processes, or −1 for one per core, got {jobs!r}")
@@ -62,6 +74,37 @@ def sweep(
 
 
 def refuse_shared_generators(cases: list[Mapping[str, Any]]) -> None:
+    """Refuse cases of which two have the same random generator.
+
+    Parameters
+    ----------
+    cases : list of mappings
+        Keyword arguments.
+
+    Returns
+    -------
+    None
+
+    Raises
+    ------
+    ValueError
+        If one generator stands in two of `cases`.
+
+    See Also
+    --------
+    sweep : asks it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.sweep import refuse_shared_generators
+    >>> rng = np.random.default_rng(0)
+    >>> refuse_shared_generators([{"rng": rng}, {"rng": rng}])
+    Traceback (most recent call last):
+        ...
+    ValueError: cases 0 and 1 share rng, a random generator, so that results would depend on where they ...
+    >>> refuse_shared_generators([{"rng": child} for child in rng.spawn(2)])
+    """
     owners: dict[int, int] = {}
     for number, case in enumerate(cases):
         for name, value in case.items():
@@ -73,6 +116,35 @@ def refuse_shared_generators(cases: list[Mapping[str, Any]]) -> None:
 
 
 def called(function: Callable[..., Any], case: dict[str, Any]) -> Any:
+    """What a function returns in a case; its exception gets a note that says in which.
+
+    Parameters
+    ----------
+    function : callable
+        To be called.
+    case : dict
+        Keyword arguments.
+
+    Returns
+    -------
+    object
+        What the function returns.
+
+    Raises
+    ------
+    Exception
+        What `function` raises.
+
+    See Also
+    --------
+    sweep : calls it for each case.
+
+    Examples
+    --------
+    >>> from uavlab.sweep import called
+    >>> called(pow, {"base": 2, "exp": 10})
+    1024
+    """
     try:
         return function(**case)
     except Exception as error:

@@ -74,7 +74,28 @@ class UAV:
     Raises
     ------
     ValueError
-        If a value is not one finite number or out of its range, or the rotors can't lift the weight.
+        If an attribute other than `name` is not one number above 0 (`payload` and `reserve`: at least 0). Only
+        `climb_speed`, `sink_speed` and `battery` may be infinite. If `max_tilt` is π/2 or more, `figure_of_merit` 0.87
+        or more, `drive_efficiency` above 1, `reserve` 1 or more, or `cruise_speed` above `top_speed`. If `thrust` can't
+        lift `mass` and `payload`.
+
+    See Also
+    --------
+    UAV.loaded : the same with another payload.
+    uavlab.power.power_needed : what flying it costs.
+    uavlab.weather.grounded_by : whether it may fly in a weather.
+
+    References
+    ----------
+    J. G. Leishman, Principles of Helicopter Aerodynamics, 2006.
+
+    Examples
+    --------
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> LIGHT_QUADROTOR
+    <UAV light quadrotor for REPARE's cases: 1.5 kg with 0 kg of payload, thrust 28 N, 1 m across, cruise 5 m/s>
+    >>> f"{LIGHT_QUADROTOR.weight:.1f} N, hovers for {LIGHT_QUADROTOR.endurance / 60:.0f} min"
+    '14.7 N, hovers for 27 min'
     """
 
     mass: float
@@ -126,13 +147,45 @@ class UAV:
                 f"({self.weight:.1f} N): carry less"
             )
 
+    def __repr__(self) -> str:
+        return (
+            f"<UAV {self.name}: {self.mass:g} kg with {self.payload:g} kg of payload, "
+            f"thrust {self.thrust:g} N, {self.diameter:g} m across, cruise {self.cruise_speed:g} m/s>"
+        )
+
     @property
     def weight(self) -> float:
         """Weight with payload, G_uav + G_s [N]."""
         return (self.mass + self.payload) * GRAVITY
 
     def loaded(self, payload: float) -> UAV:
-        """The same vehicle with another payload [kg]; a ValueError if the rotors can't lift it."""
+        """The same vehicle with another payload.
+
+        Parameters
+        ----------
+        payload : float
+            Load carried [kg], at least 0; in place of the load before.
+
+        Returns
+        -------
+        UAV
+            This one stays as it is.
+
+        Raises
+        ------
+        ValueError
+            If `payload` is negative or not finite, or the rotors can't lift it.
+
+        See Also
+        --------
+        UAV.horizontal_reserve : what the load leaves against the wind.
+
+        Examples
+        --------
+        >>> from uavlab.vehicle import LIGHT_QUADROTOR
+        >>> [round(LIGHT_QUADROTOR.loaded(payload).endurance / 60) for payload in (0.0, 0.5, 1.0)]  # minutes
+        [27, 17, 12]
+        """
         return replace(self, payload=payload)
 
     def hover_power(self, air_density: float = STANDARD_AIR) -> float:
@@ -142,6 +195,30 @@ class UAV:
         ----------
         air_density : float
             ρ [kg/m³], above 0.
+
+        Returns
+        -------
+        float
+            [W], with T the weight and A the area of the rotors.
+
+        Raises
+        ------
+        ValueError
+            If `air_density` is not one finite number above 0.
+
+        See Also
+        --------
+        uavlab.power.power_needed : in flight and in wind.
+
+        References
+        ----------
+        J. G. Leishman, Principles of Helicopter Aerodynamics, 2006, 2.8: the figure of merit.
+
+        Examples
+        --------
+        >>> from uavlab.vehicle import LIGHT_QUADROTOR
+        >>> round(LIGHT_QUADROTOR.hover_power()), round(LIGHT_QUADROTOR.loaded(1.0).hover_power())
+        (179, 386)
         """
         checks.positive_number("air_density", air_density)
         ideal = self.weight**1.5 / np.sqrt(2 * air_density * self.rotor_area)
@@ -175,7 +252,18 @@ class UAV:
         Raises
         ------
         ValueError
-            If the force is negative or not finite.
+            If `downward_force` is negative or not finite.
+
+        See Also
+        --------
+        uavlab.weather.wind_limit : the gust that it holds.
+        uavlab.weather.rain_force : a downward force.
+
+        Examples
+        --------
+        >>> from uavlab.vehicle import LIGHT_QUADROTOR
+        >>> [round(float(LIGHT_QUADROTOR.loaded(payload).horizontal_reserve()), 1) for payload in (0.0, 0.5, 1.0)]
+        [23.8, 20.0, 13.5]
         """
         checks.not_negative("downward_force", downward_force)
         down = self.weight + np.asarray(downward_force, dtype=float)
@@ -183,7 +271,18 @@ class UAV:
 
 
 class DataSheet(NamedTuple):
-    """What a maker says of an aircraft."""
+    """What a maker says of an aircraft.
+
+    See Also
+    --------
+    UAV : the vehicle to calculate with.
+
+    Examples
+    --------
+    >>> from uavlab.vehicle import DATA_SHEETS
+    >>> DATA_SHEETS[0]
+    <DataSheet DJI Phantom 4: 1.38 kg, wind 10 m/s, top speed 20 m/s, 28 min>
+    """
 
     name: str
     mass: float
@@ -200,6 +299,10 @@ class DataSheet(NamedTuple):
     """[J]"""
     rotor_diameter: float
     """Of each of its four rotors [m]."""
+
+    def __repr__(self) -> str:
+        limits = f"wind {self.wind:g} m/s, top speed {self.top_speed:g} m/s, {self.endurance / 60:.0f} min"
+        return f"<DataSheet {self.name}: {self.mass:g} kg, {limits}>"
 
 
 DATA_SHEETS = (

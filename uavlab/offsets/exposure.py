@@ -21,7 +21,7 @@ def crossing_rate(margin: npt.ArrayLike, sigma: npt.ArrayLike, natural_frequency
     Parameters
     ----------
     margin : float or array
-        From the mean offset to the boundary, u [m].
+        From the mean offset to the boundary, u [m]; either sign.
     sigma : float or array
         σ of the offset on the axis towards the boundary [m], above 0.
     natural_frequency : float
@@ -35,7 +35,21 @@ def crossing_rate(margin: npt.ArrayLike, sigma: npt.ArrayLike, natural_frequency
     Raises
     ------
     ValueError
-        If an argument is not finite or out of its range.
+        If `margin` is not finite, or `sigma` or `natural_frequency` is not above 0.
+
+    See Also
+    --------
+    collision_probability : the chance over a whole flight.
+
+    References
+    ----------
+    S. O. Rice, Mathematical Analysis of Random Noise, Bell System Technical Journal, 1944 and 1945.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import crossing_rate
+    >>> (3600 * crossing_rate([2.0, 3.0, 4.0], sigma=1.0)).round(1)  # an hour, at 2, 3 and 4σ
+    array([77.5,  6.4,  0.2])
     """
     checks.finite("margin", margin)
     checks.positive("sigma", sigma)
@@ -85,7 +99,25 @@ def collision_probability(
     Raises
     ------
     ValueError
-        If an argument is not finite or out of its range.
+        If `distance`, `duration` or `uav_diameter` is negative, `sigma` or `natural_frequency` is not above 0, or
+        `mean_away` is not finite.
+
+    See Also
+    --------
+    crossing_rate : ν.
+    offset_paths : paths to count touches on.
+
+    References
+    ----------
+    S. O. Rice, Mathematical Analysis of Random Noise, Bell System Technical Journal, 1944 and 1945.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import collision_probability
+    >>> collision_probability([3.0, 4.0, 5.0], sigma=1.0, duration=60.0, uav_diameter=1.0).round(4)
+    array([0.3485, 0.0209, 0.0004])
+    >>> collision_probability(4.0, sigma=1.0, duration=[0.0, 60.0, 600.0], uav_diameter=1.0).round(4)
+    array([0.0002, 0.0209, 0.1887])
     """
     checks.not_negative("distance", distance)
     checks.positive("sigma", sigma)
@@ -120,13 +152,13 @@ def offset_paths(
     sigma : float
         σ of the offset [m], above 0; paths start in the stationary state.
     duration : float
-        [s], at least one step.
+        How long [s], at least one step.
     rng : numpy.random.Generator or int
         Or a seed.
     count : int
         Number of paths, at least 1.
     step : float
-        [s], above 0.
+        Between looks [s], above 0.
     natural_frequency : float
         ω_n [rad/s], above 0.
     rough : bool
@@ -143,7 +175,27 @@ def offset_paths(
     Raises
     ------
     ValueError
-        If an argument is not finite or out of its range.
+        If `sigma`, `step` or `natural_frequency` is not above 0, `duration` is less than `step` or not finite, `step`
+        is below 0.0001/`natural_frequency`, `count` is no whole number of at least 1, or `rng` is neither a generator
+        nor a seed.
+
+    See Also
+    --------
+    collision_probability : the formula that such paths test.
+    OffsetModel.sample : offsets that don't follow each other.
+
+    References
+    ----------
+    G. E. Uhlenbeck and L. S. Ornstein, On the Theory of the Brownian Motion, Physical Review, 1930: the rough paths.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import offset_paths
+    >>> time, offset = offset_paths(sigma=1.0, duration=30.0, rng=0, count=1000)
+    >>> offset.shape
+    (1000, 601)
+    >>> f"{(offset > 2.0).mean():.1%} of the time beyond 2σ, {(offset > 2.0).any(axis=1).mean():.0%} of the paths ever"
+    '2.3% of the time beyond 2σ, 46% of the paths ever'
     """
     for name, value in (("sigma", sigma), ("step", step), ("natural_frequency", natural_frequency)):
         checks.positive(name, value)

@@ -38,7 +38,23 @@ class JointOffset:
     Raises
     ------
     ValueError
-        If there are not two of each, one is not finite, a σ is not above 0, or ρ is −1, 1 or beyond.
+        If `mean` or `sigma` is not two finite numbers, one of `sigma` is not above 0, or `correlation` is not between
+        −1 and 1, without the ends.
+
+    See Also
+    --------
+    JointOffset.fit : the model of samples.
+    safety_domain : fits it, and says where a share of the offsets stays.
+    OffsetModel : one axis.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import JointOffset
+    >>> model = JointOffset(mean=(0.0, 0.0), sigma=(1.0, 0.5), correlation=-0.6)
+    >>> model
+    <JointOffset: μ = (0, 0) m, σ = (1, 0.5) m, ρ = -0.6>
+    >>> f"{model.density((0.0, 0.0)):.3f} per m² on the route, a circle of {model.circle():.2f} m holds 99.73 %"
+    '0.398 per m² on the route, a circle of 3.18 m holds 99.73 %'
     """
 
     mean: tuple[float, float]
@@ -56,14 +72,40 @@ class JointOffset:
         if not -1 < self.correlation < 1:
             raise ValueError(f"correlation must be between -1 and 1, without the ends, got {self.correlation!r}")
 
+    def __repr__(self) -> str:
+        (one, two), (first, second) = self.mean, self.sigma
+        means, sigmas = f"μ = ({one:.3g}, {two:.3g}) m", f"σ = ({first:.3g}, {second:.3g}) m"
+        return f"<JointOffset: {means}, {sigmas}, ρ = {self.correlation:.3g}>"
+
     @classmethod
     def fit(cls, samples: npt.ArrayLike) -> JointOffset:
-        """The model with the means, standard deviations (n − 1) and correlation of samples (N, 2) [m], N at least 3.
+        """The model with the means, standard deviations (n − 1) and correlation of samples.
+
+        Parameters
+        ----------
+        samples : (N, 2) array
+            Offsets [m], N at least 3.
+
+        Returns
+        -------
+        JointOffset
+            Gross errors count as well.
 
         Raises
         ------
         ValueError
-            If a sample is not finite, there are too few, or they lie on a line.
+            If `samples` are not finite, fewer than 3, all equal on an axis, on a line, or not of shape (N, 2).
+
+        See Also
+        --------
+        safety_domain : the fit, and what it holds of the samples.
+        OffsetModel.fit : along one axis.
+
+        Examples
+        --------
+        >>> from uavlab.offsets import JointOffset
+        >>> JointOffset.fit([(0.4, 0.1), (-0.3, 0.2), (0.1, -0.4), (-0.2, 0.0), (0.5, -0.2)])
+        <JointOffset: μ = (0.1, -0.06) m, σ = (0.354, 0.241) m, ρ = -0.382>
         """
         values = checks.samples(samples, least=3, axes=2)
         mean, covariance = values.mean(axis=0), np.cov(values.T)
@@ -80,12 +122,71 @@ class JointOffset:
         return np.array([[one**2, self.correlation * one * two], [self.correlation * one * two, two**2]])
 
     def density(self, points: npt.ArrayLike) -> np.ndarray:
-        """f [1/m²] at points (..., 2) [m]."""
+        """f [1/m²] at points (..., 2) [m].
+
+        Parameters
+        ----------
+        points : (..., 2) array
+            Offsets on the two axes [m].
+
+        Returns
+        -------
+        (...) array
+            f [1/m²].
+
+        Raises
+        ------
+        ValueError
+            If `points` is not of shape (..., 2).
+
+        See Also
+        --------
+        JointOffset.radius_in_sigma : r in f.
+
+        Examples
+        --------
+        >>> from uavlab.offsets import JointOffset
+        >>> JointOffset(mean=(0.0, 0.0), sigma=(0.3, 0.3)).density([(0.0, 0.0), (0.3, 0.0)]).round(2)
+        array([1.77, 1.07])
+        """
         height = 2 * np.pi * self.sigma[0] * self.sigma[1] * np.sqrt(1 - self.correlation**2)
         return np.exp(-0.5 * self.radius_in_sigma(points) ** 2) / height
 
     def radius_in_sigma(self, points: npt.ArrayLike) -> np.ndarray:
-        """r of points (..., 2) [m]: which ellipse around the mean they lie on (the Mahalanobis distance)."""
+        """r of points (..., 2) [m]: which ellipse around the mean they lie on (the Mahalanobis distance).
+
+        Parameters
+        ----------
+        points : (..., 2) array
+            Offsets on the two axes [m].
+
+        Returns
+        -------
+        (...) array
+            r, at least 0; 1 on the ellipse of one σ.
+
+        Raises
+        ------
+        ValueError
+            If `points` is not of shape (..., 2).
+
+        See Also
+        --------
+        JointOffset.ellipse : the outline of one r.
+        coverage : what an r holds.
+
+        References
+        ----------
+        P. C. Mahalanobis, On the Generalised Distance in Statistics, Proceedings of the National Institute of Sciences
+        of India, 1936.
+
+        Examples
+        --------
+        >>> from uavlab.offsets import JointOffset
+        >>> model = JointOffset(mean=(0.0, 0.0), sigma=(1.0, 0.5))
+        >>> model.radius_in_sigma([(2.0, 0.0), (0.0, 2.0)])
+        array([2., 4.])
+        """
         where = checks.numbers("points", points)
         if where.shape[-1:] != (2,):
             raise ValueError(f"points must have shape (..., 2), got {where.shape}")
@@ -93,7 +194,38 @@ class JointOffset:
         return np.sqrt((u**2 - 2 * self.correlation * u * v + v**2) / (1 - self.correlation**2))
 
     def ellipse(self, coverage: float = PAUTA_COVERAGE, count: int = 181) -> np.ndarray:
-        """Closed outline (count, 2) [m] of the ellipse of equal density that holds `coverage`."""
+        """Closed outline (count, 2) [m] of the ellipse of equal density that holds `coverage`.
+
+        r = k of `pauta_radius` in two dimensions.
+
+        Parameters
+        ----------
+        coverage : float
+            Share of the offsets, between 0 and 1; 0.9973 by default.
+        count : int
+            Points of the outline, at least 2; the last is the first.
+
+        Returns
+        -------
+        (count, 2) array
+            [m]
+
+        Raises
+        ------
+        ValueError
+            If `coverage` is not between 0 and 1, without the ends.
+
+        See Also
+        --------
+        JointOffset.circle : the circle around the route instead.
+
+        Examples
+        --------
+        >>> from uavlab.offsets import JointOffset
+        >>> outline = JointOffset(mean=(0.0, 0.0), sigma=(1.0, 0.5)).ellipse()
+        >>> outline.shape, outline.max(axis=0).round(2)
+        ((181, 2), array([3.44, 1.72]))
+        """
         angle = np.linspace(0, 2 * np.pi, count)
         circle = pauta_radius(2, coverage) * np.column_stack([np.cos(angle), np.sin(angle)])
         return self.mean + circle @ np.linalg.cholesky(self.covariance).T
@@ -102,6 +234,35 @@ class JointOffset:
         """Probability of an offset of at most `radius` [m] from the route, in whichever direction.
 
         Exact, by integrating the Gaussian across the circle along the principal axes.
+
+        P = ∬ f(x, y) dx dy over x² + y² ≤ R².
+
+        Parameters
+        ----------
+        radius : float
+            R [m], at least 0.
+
+        Returns
+        -------
+        float
+            0 to 1.
+
+        Raises
+        ------
+        ValueError
+            If `radius` is negative or not finite.
+
+        See Also
+        --------
+        JointOffset.circle : the inverse.
+        coverage : where both axes have one σ and no mean.
+
+        Examples
+        --------
+        >>> from uavlab.offsets import JointOffset
+        >>> model = JointOffset(mean=(0.5, 0.0), sigma=(1.0, 1.0))
+        >>> [round(model.within_circle(radius), 3) for radius in (1.0, 2.0, 3.0, 4.0)]
+        [0.357, 0.831, 0.982, 0.999]
         """
         from scipy.integrate import quad
 
@@ -118,7 +279,34 @@ class JointOffset:
         return float(quad(slice_at, low, high, epsabs=1e-13, epsrel=1e-12, limit=200)[0]) if low < high else 0.0
 
     def circle(self, coverage: float = PAUTA_COVERAGE) -> float:
-        """Radius [m] of the circle around the route that holds `coverage`: the ξ of Eq. 7 for all directions."""
+        """Radius [m] of the circle around the route that holds `coverage`: the ξ of Eq. 7 for all directions.
+
+        Parameters
+        ----------
+        coverage : float
+            Share of the offsets, between 0 and 1; 0.9973 by default.
+
+        Returns
+        -------
+        float
+            [m]
+
+        Raises
+        ------
+        ValueError
+            If `coverage` is not between 0 and 1, without the ends.
+
+        See Also
+        --------
+        JointOffset.within_circle : the inverse.
+        minimum_safe_distance : the distance to keep for it.
+
+        Examples
+        --------
+        >>> from uavlab.offsets import JointOffset
+        >>> [round(JointOffset(mean=(push, 0.0), sigma=(1.0, 1.0)).circle(), 2) for push in (0.0, 0.5, 1.0)]
+        [3.44, 3.63, 4.02]
+        """
         from scipy.optimize import brentq
 
         share = checks.share("coverage", coverage)
@@ -127,7 +315,37 @@ class JointOffset:
         return float(brentq(lambda radius: self.within_circle(radius) - share, 0.0, around_ellipse, xtol=1e-12))
 
     def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
-        """Independent offsets (count, 2) [m]."""
+        """Independent offsets (count, 2) [m].
+
+        Parameters
+        ----------
+        count : int
+            How many, at least 0.
+        rng : numpy.random.Generator or int
+            Or a seed.
+
+        Returns
+        -------
+        (count, 2) array
+            [m]
+
+        Raises
+        ------
+        ValueError
+            If `rng` is neither a generator nor a seed.
+
+        See Also
+        --------
+        JointOffset.fit : the way back.
+
+        Examples
+        --------
+        >>> from uavlab.offsets import JointOffset
+        >>> model = JointOffset(mean=(0.0, 0.0), sigma=(1.0, 0.5), correlation=-0.6)
+        >>> drawn = model.sample(10_000, rng=0)
+        >>> drawn.shape, drawn.std(axis=0).round(1)
+        ((10000, 2), array([1. , 0.5]))
+        """
         return checks.generator("rng", rng).multivariate_normal(self.mean, self.covariance, count, method="cholesky")
 
 
@@ -147,6 +365,19 @@ class SafetyDomain:
         Of the circle around the route [m], the ξ of Eq. 7 for all directions.
     in_ellipse, in_circle : float
         Share of the offsets within each.
+
+    See Also
+    --------
+    safety_domain : makes it.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import JointOffset, safety_domain
+    >>> domain = safety_domain(JointOffset(mean=(0.0, 0.0), sigma=(1.0, 0.5)).sample(1000, rng=0))
+    >>> domain.ellipse.shape
+    (181, 2)
+    >>> round(domain.radius, 1)
+    3.1
     """
 
     model: JointOffset
@@ -155,6 +386,10 @@ class SafetyDomain:
     radius: float
     in_ellipse: float
     in_circle: float
+
+    def __repr__(self) -> str:
+        held = f"{self.in_ellipse:.2%} of the offsets in the ellipse, {self.in_circle:.2%} within {self.radius:.2f} m"
+        return f"<SafetyDomain for {self.coverage:.2%}: {held}>"
 
 
 def safety_domain(
@@ -174,11 +409,25 @@ def safety_domain(
     Returns
     -------
     SafetyDomain
+        The model, its ellipse and circle, and the share of `samples` within each.
 
     Raises
     ------
     ValueError
-        If a sample is not finite, there are too few, they lie on a line, or the coverage is not between 0 and 1.
+        If `samples` are not finite, fewer than 3, on a line, or not of shape (N, 2), `coverage` is not between 0 and 1,
+        without the ends, or `as_printed` is not True or False.
+
+    See Also
+    --------
+    JointOffset : the model.
+    uavlab.plot.safety_domain : draws it.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import JointOffset, safety_domain
+    >>> samples = JointOffset(mean=(0.0, 0.0), sigma=(1.0, 0.5)).sample(10_000, rng=0)
+    >>> [round(safety_domain(samples, as_printed=printed).coverage, 4) for printed in (False, True)]
+    [0.9973, 0.9889]
     """
     model = JointOffset.fit(samples)
     radius_in_sigma = float(pauta_radius(1 if checks.flag("as_printed", as_printed) else 2, coverage))
@@ -200,6 +449,8 @@ def magnitude(sigma: float, mean_length: float = 0.0) -> Any:
 
     Rayleigh: mean √(π/2) σ = 1.2533 σ, 99.73 % within 3.439 σ. With a mean offset: Rice.
 
+    f(r) = (r/σ²) exp(−(r² + m²)/2σ²) I₀(rm/σ²), m the mean offset's length, I₀ the modified Bessel function.
+
     Parameters
     ----------
     sigma : float
@@ -215,7 +466,23 @@ def magnitude(sigma: float, mean_length: float = 0.0) -> Any:
     Raises
     ------
     ValueError
-        If σ is not above 0 or the mean offset negative.
+        If `sigma` is not above 0, `mean_length` is negative, or one is not a single finite number.
+
+    See Also
+    --------
+    JointOffset.within_circle : the same where the axes differ.
+    pauta_radius : k of the circle without a mean offset.
+
+    References
+    ----------
+    S. O. Rice, Mathematical Analysis of Random Noise, Bell System Technical Journal, 1944 and 1945.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import PAUTA_COVERAGE, magnitude
+    >>> law = magnitude(sigma=1.0)
+    >>> f"mean {law.mean():.4f} m, 99.73 % within {law.ppf(PAUTA_COVERAGE):.3f} m, only {law.cdf(3.0):.2%} within 3 m"
+    'mean 1.2533 m, 99.73 % within 3.439 m, only 98.89% within 3 m'
     """
     from scipy.stats import norm, rayleigh, rice
 

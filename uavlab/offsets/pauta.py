@@ -34,7 +34,17 @@ def coverage(radius_in_sigma: npt.ArrayLike, dimensions: int) -> np.ndarray:
     Raises
     ------
     ValueError
-        If k is negative or not finite, or d not 1, 2 or 3.
+        If `radius_in_sigma` is negative or not finite, or `dimensions` is not 1, 2 or 3.
+
+    See Also
+    --------
+    pauta_radius : the inverse, from a share to a radius.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import coverage
+    >>> [round(float(coverage(3.0, dimensions)), 4) for dimensions in (1, 2, 3)]
+    [0.9973, 0.9889, 0.9707]
     """
     checks.not_negative("radius_in_sigma", radius_in_sigma)
     return gammainc(checked_dimensions(dimensions) / 2, 0.5 * np.asarray(radius_in_sigma, dtype=float) ** 2)
@@ -60,19 +70,49 @@ def pauta_radius(dimensions: int, coverage: float = PAUTA_COVERAGE) -> float:
     Raises
     ------
     ValueError
-        If d is not 1, 2 or 3, or the coverage not between 0 and 1.
+        If `dimensions` is not 1, 2 or 3, or `coverage` is not between 0 and 1, without the ends.
+
+    See Also
+    --------
+    coverage : the inverse, from a radius to a share.
+    minimum_safe_distance : the distance to keep, with k of here times σ.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import pauta_radius
+    >>> [round(pauta_radius(dimensions), 3) for dimensions in (1, 2, 3)]
+    [3.0, 3.439, 3.763]
     """
     share = checks.share("coverage", coverage)
     return float(np.sqrt(2 * gammaincinv(checked_dimensions(dimensions) / 2, share)))
 
 
 class Filtered(NamedTuple):
-    """What `pauta_filter` left: which samples it kept, their mean and σ [m], and in how many rounds it removed some."""
+    """What `pauta_filter` left: which samples it kept, their mean and σ [m], and in how many rounds it removed some.
+
+    See Also
+    --------
+    pauta_filter : makes it.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import pauta_filter
+    >>> filtered = pauta_filter([0.1, -0.2, 0.3, -0.1, 0.2, -0.3, 0.0, 0.1, -0.2, 0.2, -0.1, 0.3, 9.0])
+    >>> filtered
+    <Filtered: 12 of 13 samples kept, rounds: 1, mean 0.025 m, σ 0.205 m>
+    >>> filtered.kept
+    array([ True,  True,  True,  True,  True,  True,  True,  True,  True,
+            True,  True,  True, False])
+    """
 
     kept: np.ndarray
     mean: float
     sigma: float
     rounds: int
+
+    def __repr__(self) -> str:
+        counts = f"{self.kept.sum()} of {len(self.kept)} samples kept"
+        return f"<Filtered: {counts}, rounds: {self.rounds}, mean {self.mean:.3f} m, σ {self.sigma:.3f} m>"
 
 
 def pauta_filter(samples: npt.ArrayLike, radius_in_sigma: float = 3.0) -> Filtered:
@@ -85,7 +125,7 @@ def pauta_filter(samples: npt.ArrayLike, radius_in_sigma: float = 3.0) -> Filter
     Parameters
     ----------
     samples : (N,) array
-        Offsets on one axis [m].
+        Offsets on one axis [m]; N at least 11 for 3σ.
     radius_in_sigma : float
         At least 1; 3 for the Pauta criterion.
 
@@ -97,7 +137,25 @@ def pauta_filter(samples: npt.ArrayLike, radius_in_sigma: float = 3.0) -> Filter
     Raises
     ------
     ValueError
-        If a sample is not finite, all are equal, or there are too few for any to be removed.
+        If `radius_in_sigma` is below 1, or `samples` are not finite, all equal, not of shape (N,), or too few for any
+        to be removed.
+
+    See Also
+    --------
+    OffsetModel.fit : the model of samples that are left.
+
+    References
+    ----------
+    R. E. Shiffler, Maximum Z Scores and Outliers, The American Statistician, 1988: why few samples have no outlier.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.offsets import pauta_filter
+    >>> offsets = np.random.default_rng(0).normal(0.0, 1.0, 200)
+    >>> offsets[:3] = 5.0, 20.0, 80.0  # gross errors: the largest hides the others
+    >>> pauta_filter(offsets)
+    <Filtered: 197 of 200 samples kept, rounds: 2, mean 0.012 m, σ 0.970 m>
     """
     checks.at_least_one("radius_in_sigma", radius_in_sigma)
     values = checks.samples(samples, least=2)
@@ -148,8 +206,23 @@ def minimum_safe_distance(
     Raises
     ------
     ValueError
-        If an argument is negative or not finite, a normal has no direction, μ and n don't have as many components, or
-        only one of them is given.
+        If `offset` is negative or not finite, `uav_diameter` is not above 0, `mean_offset` or `normal` is not made of
+        two or three finite numbers or they don't have as many, `normal` has length 0, or only one of the two is given.
+
+    See Also
+    --------
+    pauta_radius : k in ξ = kσ.
+    JointOffset.circle : ξ for all directions at once.
+    uavlab.resilience.safe_distance : D_min of REPARE Table 4.
+
+    Examples
+    --------
+    >>> from uavlab.offsets import minimum_safe_distance
+    >>> float(minimum_safe_distance(3.0, uav_diameter=1.0))
+    3.5
+    >>> walls = [(-1.0, 0.0), (1.0, 0.0)]  # away from a wall in the east, and from one in the west
+    >>> minimum_safe_distance(3.0, 1.0, mean_offset=(0.5, 0.0), normal=walls)
+    array([4. , 3.5])
     """
     checks.not_negative("offset", offset)
     checks.positive("uav_diameter", uav_diameter)

@@ -42,7 +42,20 @@ class Setting:
     Raises
     ------
     ValueError
-        If a number is out of its range.
+        If `noise`, `wind_scale` or `wind_shape` is not above 0, `channelling` is not from 0 to below 1, or
+        `class_count` is no whole number of at least 2.
+
+    See Also
+    --------
+    make_dataset : draws a table in it.
+
+    Examples
+    --------
+    >>> from uavlab.prediction import SETTINGS, Setting, make_dataset
+    >>> Setting(noise=0.1).noise < SETTINGS["paper"].noise
+    True
+    >>> make_dataset(Setting(noise=0.1, class_count=4), count=100, train_count=80)
+    <Dataset: 100 rows in 4 classes, 80 of them to learn from>
     """
 
     channelling: float = 0.38
@@ -87,9 +100,27 @@ class Dataset:
     noise : float
         Spread s of the logarithm of the offset about it.
     class_count : int
+        Classes of 1 m.
     train : (N,) array of bool
         Rows to learn from; the others are for the test.
     setting : Setting
+        Where it comes from.
+
+    See Also
+    --------
+    make_dataset : makes one.
+    score : how good a prediction for the rows of its test is.
+
+    Examples
+    --------
+    >>> from uavlab.prediction import make_dataset
+    >>> data = make_dataset(count=100, train_count=80)
+    >>> data
+    <Dataset: 100 rows in 6 classes, 80 of them to learn from>
+    >>> data.features.shape, data.classes.shape
+    ((100, 6), (100,))
+    >>> int(data.test.sum())
+    20
     """
 
     features: pandas.DataFrame
@@ -100,6 +131,11 @@ class Dataset:
     class_count: int
     train: np.ndarray
     setting: Setting
+
+    def __repr__(self) -> str:
+        return (
+            f"<Dataset: {len(self.train)} rows in {self.class_count} classes, {self.train.sum()} of them to learn from>"
+        )
 
     @property
     def test(self) -> np.ndarray:
@@ -115,8 +151,9 @@ def synthetic_weather(
     Parameters
     ----------
     count : int
-        Hours, drawn independently.
+        Hours, drawn independently; at least 0.
     rng : numpy.random.Generator or int
+        Or a seed.
     wind_scale, wind_shape : float
         Of the wind's Weibull distribution [m/s] and [-], above 0.
 
@@ -128,7 +165,21 @@ def synthetic_weather(
     Raises
     ------
     ValueError
-        If the count isn't a whole number, or the wind's scale or shape not above 0.
+        If `count` is no whole number of at least 0, `wind_scale` or `wind_shape` is not above 0, or `rng` is neither a
+        generator nor a seed.
+
+    See Also
+    --------
+    uavlab.weather.greensboro_weather : real hours with the same columns.
+    median_offsets : the offsets that belong to it.
+
+    Examples
+    --------
+    >>> from uavlab.prediction import synthetic_weather
+    >>> hours = synthetic_weather(10_000, rng=0, wind_scale=4.0)
+    >>> mean, strong = hours.wind_speed.mean(), hours.wind_speed.quantile(0.99)
+    >>> f"wind of {mean:.1f} m/s on average, above {strong:.0f} m/s in one hour of 100"
+    'wind of 3.5 m/s on average, above 9 m/s in one hour of 100'
     """
     checks.whole("count", count, 0)
     checks.positive("wind_scale", wind_scale)
@@ -170,18 +221,36 @@ def make_dataset(
     setting : str or Setting
         "paper", "steady wind" or "greensboro" of `SETTINGS`, or one of your own.
     rng : numpy.random.Generator or int
+        Or a seed.
     uav : UAV
+        Whose offsets they are.
     count, train_count : int
         Rows in all, and those to learn from; with real weather at most 8 760 different hours.
 
     Returns
     -------
     Dataset
+        Features, offsets and classes of `count` rows.
 
     Raises
     ------
     ValueError
-        If the setting is unknown, or there are not that many hours or rows.
+        If `setting` is unknown, `count` is no whole number of at least 2 or above the hours of real weather,
+        `train_count` is not from 1 to `count` − 1, or `rng` is neither a generator nor a seed.
+
+    See Also
+    --------
+    compare_models : trains models on such tables.
+    OffsetPredictor : learns from one.
+
+    Examples
+    --------
+    >>> from uavlab.prediction import make_dataset
+    >>> data = make_dataset("paper", rng=0)
+    >>> data
+    <Dataset: 7330 rows in 6 classes, 5864 of them to learn from>
+    >>> f"{(data.classes == 1).mean():.0%} of the flights stay within 1 m"
+    '42% of the flights stay within 1 m'
     """
     if isinstance(setting, str):
         setting = SETTINGS[checks.one_of("setting", setting, SETTINGS)]

@@ -53,6 +53,7 @@ def median_offsets(
     weather : pandas.DataFrame, mapping of arrays or numbers, or Weather
         With the columns `FEATURES`, N rows.
     uav : UAV
+        With its payload.
     channelling : float
         Share by which the wind is stronger along the streets and weaker across them, 0 to below 1.
     street_axis_deg : float
@@ -81,8 +82,25 @@ def median_offsets(
     Raises
     ------
     ValueError
-        If a parameter or a value of the weather is out of its range, a column is missing, or the rotors have no
-        reserve.
+        If `channelling` is not from 0 to below 1, `height_factor`, `convective_wind`, `stiffness` or `still_offset` is
+        not above 0, `mechanical_turbulence`, `convective_turbulence` or `peak_factor` is negative, or `street_axis_deg`
+        is not finite. If `weather` lacks a column or has a value outside of its range. If `uav` has no thrust left
+        against the wind.
+
+    See Also
+    --------
+    simulate_offsets : the same with noise.
+    uavlab.weather.wind_drag : the force.
+    uavlab.resilience.gust_offset : the offset from the mean wind alone.
+
+    Examples
+    --------
+    >>> from uavlab.prediction import median_offsets
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> from uavlab.weather import Weather
+    >>> along, across = Weather(forecast_wind=8.0, wind_from_deg=60.0), Weather(forecast_wind=8.0, wind_from_deg=150.0)
+    >>> [round(float(median_offsets(weather, LIGHT_QUADROTOR)[0]), 1) for weather in (along, across)]
+    [7.5, 1.9]
     """
     checks.finite("street_axis_deg", street_axis_deg)
     checks.positive("height_factor", height_factor)
@@ -121,7 +139,9 @@ def simulate_offsets(
     weather : pandas.DataFrame, mapping of arrays or numbers, or Weather
         With the columns `FEATURES`, N rows.
     uav : UAV
+        With its payload.
     rng : numpy.random.Generator or int
+        Or a seed.
     noise : float
         Spread s of the logarithm, at least 0; 0.1 to 0.4.
     site : float
@@ -135,7 +155,22 @@ def simulate_offsets(
     Raises
     ------
     ValueError
-        As `median_offsets`; if the noise is negative.
+        If `noise` is negative, or `rng` is neither a generator nor a seed; for `weather`, `uav` and `site` as
+        `median_offsets`.
+
+    See Also
+    --------
+    median_offsets : the physics in it.
+    bayes_accuracy : what the noise leaves to be known.
+
+    Examples
+    --------
+    >>> from uavlab.prediction import median_offsets, simulate_offsets, synthetic_weather
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> hours = synthetic_weather(10_000, rng=0)
+    >>> ratio = simulate_offsets(hours, LIGHT_QUADROTOR, rng=1, noise=0.2) / median_offsets(hours, LIGHT_QUADROTOR)
+    >>> f"{(ratio > 1).mean():.1f} of the offsets are above the median, {(ratio > 1.49).mean():.3f} above 1.49 times it"
+    '0.5 of the offsets are above the median, 0.022 above 1.49 times it'
     """
     checks.not_negative("noise", noise)
     median = median_offsets(weather, uav, **site)
@@ -144,6 +179,8 @@ def simulate_offsets(
 
 def offset_class(offsets: npt.ArrayLike, class_count: int = 6) -> np.ndarray:
     """Class of an offset: metres, rounded up, from 1 to the last class.
+
+    k = ⌈ξ⌉, from 1 to the number of classes.
 
     Parameters
     ----------
@@ -155,11 +192,22 @@ def offset_class(offsets: npt.ArrayLike, class_count: int = 6) -> np.ndarray:
     Returns
     -------
     array of int
+        The shape of `offsets`.
 
     Raises
     ------
     ValueError
-        If an offset is negative or not finite.
+        If `offsets` has a negative value or one that is not finite, or `class_count` is no whole number of at least 2.
+
+    See Also
+    --------
+    class_probabilities : the chance of each class.
+
+    Examples
+    --------
+    >>> from uavlab.prediction import offset_class
+    >>> offset_class([0.0, 1.0, 1.01, 3.5, 20.0])
+    array([1, 1, 2, 4, 6])
     """
     checks.whole("class_count", class_count, 2)
     checks.not_negative("offsets", offsets)
@@ -188,7 +236,20 @@ def class_probabilities(log_median: npt.ArrayLike, noise: float, class_count: in
     Raises
     ------
     ValueError
-        If a median is not finite, or the noise or the number of classes out of its range.
+        If `log_median` is not finite, `noise` is not above 0, or `class_count` is no whole number of at least 2.
+
+    See Also
+    --------
+    offset_class : the class of an offset.
+    bayes_accuracy : the mean of the largest ones.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.prediction import class_probabilities
+    >>> class_probabilities(np.log([1.5, 2.0]), noise=0.21, class_count=4).round(2)
+    array([[0.03, 0.89, 0.08, 0.  ],
+           [0.  , 0.5 , 0.47, 0.03]])
     """
     checks.whole("class_count", class_count, 2)
     checks.positive("noise", noise)
@@ -212,6 +273,23 @@ def bayes_accuracy(log_median: npt.ArrayLike, noise: float, class_count: int = 6
     -------
     float
         From 1/class_count to 1.
+
+    Raises
+    ------
+    ValueError
+        If `log_median` is not finite, `noise` is not above 0, or `class_count` is no whole number of at least 2.
+
+    See Also
+    --------
+    class_probabilities : P.
+    score : how far a model stays below it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.prediction import bayes_accuracy
+    >>> [round(bayes_accuracy(np.log([median]), noise=0.21), 2) for median in (1.5, 2.0)]  # in a class, and between two
+    [0.89, 0.5]
     """
     return float(class_probabilities(log_median, noise, class_count).max(axis=1).mean())
 

@@ -131,6 +131,7 @@ def score(data: Dataset, predicted: npt.ArrayLike) -> dict[str, float]:
     Parameters
     ----------
     data : Dataset
+        With its rows for the test.
     predicted : array
         For each row of the test, a class or a value between classes; it is rounded for all but R².
 
@@ -145,7 +146,21 @@ def score(data: Dataset, predicted: npt.ArrayLike) -> dict[str, float]:
     Raises
     ------
     ValueError
-        If there are not as many predictions as rows, or one is not finite.
+        If `predicted` has not as many values as there are rows for the test, or one that is not finite.
+
+    See Also
+    --------
+    compare_models : scores of several models over several datasets.
+    bayes_accuracy : the limit.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.prediction import make_dataset, score
+    >>> data = make_dataset(count=2000, train_count=1000)
+    >>> careful = score(data, np.full(data.test.sum(), 6))
+    >>> f"{careful['under_prediction']:.0%} too low, but {careful['excess']:.1f} classes too high on average"
+    '0% too low, but 4.0 classes too high on average'
     """
     checks.finite("predicted", predicted)
     predicted = np.asarray(predicted, dtype=float)
@@ -197,7 +212,22 @@ def compare_models(
     Raises
     ------
     ValueError
-        If there are fewer than 2 seeds or one is repeated, or the setting is unknown.
+        If `seeds` are fewer than 2 or one is repeated, `setting` is unknown, or `jobs` is 0 or no whole number.
+
+    See Also
+    --------
+    score : the measures.
+    uavlab.sweep.sweep : runs the seeds.
+
+    Examples
+    --------
+    >>> from uavlab.prediction import MODELS, compare_models
+    >>> models = {name: MODELS[name] for name in ("Ridge", "GaussianNB")}
+    >>> table = compare_models(range(2), models=models, progress=False)
+    >>> table.index.tolist()
+    ['Ridge', 'GaussianNB']
+    >>> bool((table.accuracy < table.bayes).all())
+    True
     """
     pandas = require("pandas", "prediction")
     seeds = list(seeds)

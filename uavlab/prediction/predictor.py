@@ -63,6 +63,8 @@ class Training:
 class OffsetPredictor:
     """From the weather to the class of the offset, and to σ "rounded up" (REPARE section 2.2.3).
 
+    ln ξ = f(weather) + e: f by XGBoost, the spread and the quantile of e by cross-validation.
+
     Attributes
     ----------
     features : tuple of str
@@ -77,7 +79,29 @@ class OffsetPredictor:
     Raises
     ------
     ValueError
-        If there are no features or one is repeated, or the quantile or the number of classes is out of its range.
+        If `features` is empty, no tuple of names or has one twice, `class_count` is no whole number of at least 2, or
+        `quantile` is not from 0.5 to below 1.
+
+    See Also
+    --------
+    OffsetPredictor.fit : learns from flights.
+    make_dataset : flights to learn from.
+    uavlab.resilience.safe_distance : the paper's table in its place.
+
+    References
+    ----------
+    T. Chen and C. Guestrin, XGBoost: A Scalable Tree Boosting System, Proceedings of the 22nd ACM SIGKDD Conference,
+    2016.
+
+    Examples
+    --------
+    >>> from uavlab.prediction import OffsetPredictor, make_dataset
+    >>> data = make_dataset(count=200, train_count=100)
+    >>> predictor = OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
+    >>> predictor
+    <OffsetPredictor of wind_speed, 6 classes, quantile 0.95, fitted>
+    >>> predictor.predict_offset({"wind_speed": [3.0, 8.0]})
+    array([2., 6.])
     """
 
     features: tuple[str, ...] = FEATURES
@@ -94,13 +118,19 @@ class OffsetPredictor:
         if not 0.5 <= self.quantile < 1:
             raise ValueError(f"quantile must be from 0.5 to below 1, got {self.quantile!r}")
 
+    def __repr__(self) -> str:
+        state = "not fitted" if self.training is None else "fitted"
+        names = ", ".join(self.features) if len(self.features) < 4 else f"{len(self.features)} features"
+        counts = f"{names}, {self.class_count} classes, quantile {self.quantile:g}"
+        return f"<OffsetPredictor of {counts}, {state}>"
+
     def fit(self, features: Any, offsets: npt.ArrayLike, *, drop_nan: bool = False) -> OffsetPredictor:
         """A predictor that has learned from these flights.
 
         Parameters
         ----------
         features : pandas.DataFrame
-            N rows, at least 20.
+            N rows, at least 20, with the predictor's columns.
         offsets : (N,) array
             ξ [m], above 0.
         drop_nan : bool
@@ -114,8 +144,20 @@ class OffsetPredictor:
         Raises
         ------
         ValueError
-            If a column is missing, a row has no number, an offset isn't above 0, all offsets are equal, or there are
-            too few rows.
+            If `features` lacks a column or has too few rows, `offsets` are not above 0, all equal or not one for each
+            row, or either has a value that is no number (and `drop_nan` is False).
+
+        See Also
+        --------
+        OffsetPredictor.predict_offset : what it is for.
+        OffsetPredictor.save : keeps what it has learned.
+
+        Examples
+        --------
+        >>> from uavlab.prediction import OffsetPredictor, make_dataset
+        >>> data = make_dataset(count=200, train_count=100)
+        >>> OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
+        <OffsetPredictor of wind_speed, 6 classes, quantile 0.95, fitted>
         """
         table = checked_columns(features, self.features)
         reached = checks.numbers("offsets", offsets)
@@ -139,7 +181,42 @@ class OffsetPredictor:
         return replace(self, training=Training(model.get_booster(), float(residuals.std()), margin, ranges))
 
     def predict_probabilities(self, features: Any) -> np.ndarray:
-        """Probability of each class, (N, class_count); parameters and errors as for `predict_class`."""
+        """Probability of each class: `class_probabilities` of the predicted ln ξ and the spread of its residuals.
+
+        Parameters
+        ----------
+        features : pandas.DataFrame, mapping of arrays or numbers, or Weather
+            N rows with the columns that it was trained on; more columns don't matter.
+
+        Returns
+        -------
+        (N, class_count) array
+            Each row adds up to 1.
+
+        Raises
+        ------
+        ValueError
+            If the predictor isn't fitted, or `features` lacks a column or has a value that is no number.
+
+        Warns
+        -----
+        UserWarning
+            If a value lies outside of the range it was trained on, by over 1 % of it: trees don't extrapolate.
+
+        See Also
+        --------
+        OffsetPredictor.predict_class : the most probable one.
+        class_probabilities : the formula.
+
+        Examples
+        --------
+        >>> from uavlab.prediction import OffsetPredictor, make_dataset
+        >>> data = make_dataset(count=200, train_count=100)
+        >>> predictor = OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
+        >>> chances = predictor.predict_probabilities({"wind_speed": [3.0, 8.0]})
+        >>> chances.shape, chances.sum(axis=1).round(6)
+        ((2, 6), array([1., 1.]))
+        """
         return class_probabilities(self.log_offset(features), self.fitted.spread, self.class_count)
 
     def predict_class(self, features: Any) -> np.ndarray:
@@ -147,7 +224,7 @@ class OffsetPredictor:
 
         Parameters
         ----------
-        features : pandas.DataFrame or Weather
+        features : pandas.DataFrame, mapping of arrays or numbers, or Weather
             N rows with the columns that it was trained on; more columns don't matter.
 
         Returns
@@ -158,20 +235,66 @@ class OffsetPredictor:
         Raises
         ------
         ValueError
-            If it isn't fitted, a column is missing, or a row has a value that is no number.
+            If the predictor isn't fitted, or `features` lacks a column or has a value that is no number.
 
         Warns
         -----
         UserWarning
             If a value lies outside of the range it was trained on, by over 1 % of it: trees don't extrapolate.
+
+        See Also
+        --------
+        OffsetPredictor.predict_offset : the class to fly with, which is seldom exceeded.
+
+        Examples
+        --------
+        >>> from uavlab.prediction import OffsetPredictor, make_dataset
+        >>> data = make_dataset(count=200, train_count=100)
+        >>> predictor = OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
+        >>> calm, windy = predictor.predict_class({"wind_speed": [3.0, 8.0]})
+        >>> bool(calm < windy)
+        True
         """
         return 1 + self.predict_probabilities(features).argmax(axis=1)
 
     def predict_offset(self, features: Any) -> np.ndarray:
-        """Offset to be survived ξ [m], rounded up: the class that it doesn't exceed with `quantile`.
+        """Offset to be survived ξ, rounded up: the class that it doesn't exceed with `quantile`.
 
-        The last class holds all that is larger: there it is a least value.
-        Parameters, errors and warnings as for `predict_class`.
+        ξ = ⌈exp(f(weather) + q)⌉, q the quantile of the residuals. The last class holds all that is larger: there it is
+        a least value.
+
+        Parameters
+        ----------
+        features : pandas.DataFrame, mapping of arrays or numbers, or Weather
+            N rows with the columns that it was trained on; more columns don't matter.
+
+        Returns
+        -------
+        (N,) array
+            ξ [m], 1 to `class_count`.
+
+        Raises
+        ------
+        ValueError
+            If the predictor isn't fitted, or `features` lacks a column or has a value that is no number.
+
+        Warns
+        -----
+        UserWarning
+            If a value lies outside of the range it was trained on, by over 1 % of it: trees don't extrapolate.
+
+        See Also
+        --------
+        OffsetPredictor.predict_sigma : the σ that belongs to it.
+        uavlab.offsets.minimum_safe_distance : the distance to keep for it.
+
+        Examples
+        --------
+        >>> from uavlab.prediction import OffsetPredictor, make_dataset
+        >>> data = make_dataset(count=200, train_count=100)
+        >>> predictor = OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
+        >>> bool((predictor.predict_offset(data.features) >= predictor.predict_class(data.features)).all())
+        True
         """
         high = np.exp(self.log_offset(features) + self.fitted.margin)
         return offset_class(high, self.class_count).astype(float)
@@ -183,24 +306,74 @@ class OffsetPredictor:
 
         Parameters
         ----------
-        features : pandas.DataFrame or Weather
+        features : pandas.DataFrame, mapping of arrays or numbers, or Weather
+            As for `predict_class`.
         pauta : float
             Radius of the Pauta criterion in σ, above 0: 3 on one axis, 3.44 in the plane, 3.76 in space.
 
         Returns
         -------
         (N,) array
+            σ [m].
 
         Raises
         ------
         ValueError
-            As `predict_class`; if `pauta` isn't above 0.
+            If `pauta` is not above 0, the predictor isn't fitted, or `features` lacks a column or has a value that is
+            no number.
+
+        See Also
+        --------
+        OffsetPredictor.predict_offset : ξ.
+        uavlab.offsets.pauta_radius : the radius in 1, 2 or 3 dimensions.
+
+        Examples
+        --------
+        >>> from uavlab.prediction import OffsetPredictor, make_dataset
+        >>> data = make_dataset(count=200, train_count=100)
+        >>> predictor = OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
+        >>> predictor.predict_sigma({"wind_speed": [3.0]}).round(2)
+        array([0.67])
         """
         checks.positive("pauta", pauta)
         return self.predict_offset(features) / pauta
 
     def log_offset(self, features: Any) -> np.ndarray:
-        """Predicted mean of ln ξ, (N,); parameters, errors and warnings as for `predict_class`."""
+        """Predicted mean of ln ξ.
+
+        Parameters
+        ----------
+        features : pandas.DataFrame, mapping of arrays or numbers, or Weather
+            N rows with the columns that it was trained on; more columns don't matter.
+
+        Returns
+        -------
+        (N,) array
+            f(weather) [log m].
+
+        Raises
+        ------
+        ValueError
+            If the predictor isn't fitted, or `features` lacks a column or has a value that is no number.
+
+        Warns
+        -----
+        UserWarning
+            If a value lies outside of the range it was trained on, by over 1 % of it: trees don't extrapolate.
+
+        See Also
+        --------
+        OffsetPredictor.predict_offset : in metres, and rounded up.
+
+        Examples
+        --------
+        >>> from uavlab.prediction import OffsetPredictor, make_dataset
+        >>> data = make_dataset(count=200, train_count=100)
+        >>> predictor = OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
+        >>> calm, windy = predictor.log_offset({"wind_speed": [3.0, 8.0]})
+        >>> bool(calm < windy)
+        True
+        """
         training = self.fitted
         table = feature_table(features, self.features)
         for name, (low, high) in training.ranges.items():
@@ -232,9 +405,25 @@ class OffsetPredictor:
         Raises
         ------
         ValueError
-            If it isn't fitted, or the name doesn't end in .json.
+            If the predictor isn't fitted, or `path` doesn't end in .json.
         OSError
             If the file can't be written, as in a folder that doesn't exist.
+
+        See Also
+        --------
+        OffsetPredictor.load : reads it.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> from uavlab.prediction import OffsetPredictor, make_dataset
+        >>> data = make_dataset(count=200, train_count=100)
+        >>> predictor = OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
+        >>> with TemporaryDirectory() as folder:
+        ...     predictor.save(Path(folder, "offsets.json"))
+        ...     print([file.name for file in Path(folder).iterdir()])
+        ['offsets.json']
         """
         training = self.fitted
         if not str(path).endswith(".json"):
@@ -254,6 +443,7 @@ class OffsetPredictor:
         Parameters
         ----------
         path : str or path
+            A file of `save`.
         features : tuple of str
             Columns that it has to have been trained on, in this order.
 
@@ -265,9 +455,25 @@ class OffsetPredictor:
         Raises
         ------
         FileNotFoundError
-            If there is no such file.
+            If there is no file at `path`.
         ValueError
-            If it isn't such a file, was changed since, or was trained on other features.
+            If the file at `path` isn't one of `save`, was changed since, or was trained on other columns than
+            `features`.
+
+        See Also
+        --------
+        OffsetPredictor.save : writes it.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> from uavlab.prediction import OffsetPredictor, make_dataset
+        >>> data = make_dataset(count=200, train_count=100)
+        >>> predictor = OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
+        >>> with TemporaryDirectory() as folder:
+        ...     predictor.save(f"{folder}/offsets.json")
+        ...     OffsetPredictor.load(f"{folder}/offsets.json", ("wind_speed",))
+        <OffsetPredictor of wind_speed, 6 classes, quantile 0.95, fitted>
         """
         xgboost = require("xgboost", "prediction")
         content = Path(path).read_bytes()

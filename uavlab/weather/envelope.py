@@ -35,6 +35,7 @@ def wind_limit(
     Parameters
     ----------
     uav : UAV
+        With its payload.
     rain : float or array
         Force of the rain F_r [N], `rain_force`.
     air_density : float or array
@@ -50,7 +51,20 @@ def wind_limit(
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If `rain` is negative, `air_density` is not above 0, or `safety_factor` is below 1.
+
+    See Also
+    --------
+    mean_wind_limit : the limit of the mean wind.
+    grounded_by : asks all three limits.
+    uavlab.vehicle.UAV.horizontal_reserve : the force that is left against the wind.
+
+    Examples
+    --------
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> from uavlab.weather import wind_limit
+    >>> [round(float(wind_limit(LIGHT_QUADROTOR.loaded(load))), 1) for load in (0.0, 0.6, 1.0, 1.2)]
+    [25.5, 22.7, 19.2, 0.0]
     """
     checks.positive("air_density", air_density)
     safe = lift_margin(uav, rain, safety_factor=safety_factor) > 0
@@ -81,7 +95,19 @@ def course_wind_limit(air_speed: float, ground_speed: npt.ArrayLike, wind_angle:
     Raises
     ------
     ValueError
-        If the ground speed can't be held in calm air, or an argument is out of its range.
+        If `air_speed` is not above 0, `ground_speed` is not within 0 and `air_speed`, or `wind_angle` is not finite.
+
+    See Also
+    --------
+    reachable_ground_speed : the same triangle, solved for the ground speed.
+    mean_wind_limit : the limit from any side, with thrust and gusts.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.weather import course_wind_limit
+    >>> course_wind_limit(10.0, 6.0, np.radians([0.0, 90.0, 180.0])).round(1)  # from behind, across, ahead
+    array([16.,  8.,  4.])
     """
     checks.positive("air_speed", air_speed)
     checks.within("ground_speed", ground_speed, 0.0, air_speed, "m/s, the air_speed")
@@ -105,9 +131,12 @@ def mean_wind_limit(
     The least of two: the gust that it holds over the gust factor, and the air speed that it reaches less the ground
     speed that it needs. That air speed is the top speed, or less when the load leaves no thrust for it.
 
+    W = min(V/g, min(V, V_top) − V_d), V of `wind_limit`, g the gust factor.
+
     Parameters
     ----------
     uav : UAV
+        With its payload.
     rain, air_density, safety_factor
         As for `wind_limit`.
     ground_speed : float
@@ -123,7 +152,20 @@ def mean_wind_limit(
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If `ground_speed` or `rain` is negative, `air_density` is not above 0, or `gust_factor` or `safety_factor` is
+        below 1.
+
+    See Also
+    --------
+    wind_limit : the strongest gust.
+    grounded_by : the same question for one weather, answered in words.
+
+    Examples
+    --------
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> from uavlab.weather import mean_wind_limit
+    >>> [round(float(mean_wind_limit(LIGHT_QUADROTOR, ground_speed=speed)), 1) for speed in (0.0, 5.0, 15.0)]
+    [14.5, 13.0, 3.0]
     """
     checks.not_negative("ground_speed", ground_speed)
     checks.at_least_one("gust_factor", gust_factor)
@@ -135,15 +177,40 @@ def mean_wind_limit(
 def air_speed_held(uav: UAV, rain: float = 0.0, *, air_density: float = STANDARD_AIR, share: float = 1.0) -> float:
     """Greatest steady speed through the air [m/s]: the top speed, or less where the thrust left over holds less.
 
+    V = min(V_top, √(2 share R(F_r)/(ρ C S))), R the horizontal reserve of the thrust.
+
     Parameters
     ----------
     uav : UAV
+        With its payload.
     rain : float
         Force of the rain F_r [N], at least 0.
     air_density : float
         ρ [kg/m³], above 0.
     share : float
-        Of the horizontal reserve that steady drag may take.
+        Of the horizontal reserve that steady drag may take, 0 to 1.
+
+    Returns
+    -------
+    float
+        V [m/s].
+
+    Raises
+    ------
+    ValueError
+        If `rain` is negative.
+
+    See Also
+    --------
+    ground_speed_held : what is left of it over ground.
+    wind_limit : the gust that the whole reserve holds.
+
+    Examples
+    --------
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> from uavlab.weather import air_speed_held
+    >>> [round(air_speed_held(LIGHT_QUADROTOR.loaded(load), share=0.4), 1) for load in (0.0, 0.6, 1.0)]
+    [16.1, 14.4, 12.1]
     """
     held = share * float(uav.horizontal_reserve(rain))
     return min(uav.top_speed, float(np.sqrt(2.0 * held / (air_density * uav.drag_area))))
@@ -162,24 +229,47 @@ def ground_speed_held(
 
     The wind triangle (`reachable_ground_speed`) at `air_speed_held`, and no faster up and down than the UAV can.
 
+    V = min(W_∥ + √(V_a² − W_⊥²), V_climb/n_z), with V_a of `air_speed_held`, the wind's parts along and across the
+    direction n, and V_sink/|n_z| on the way down.
+
     Parameters
     ----------
     uav : UAV
+        With its payload.
     direction : (..., 3) array
         Unit vectors.
     wind : (2,) or (3,) array
         Mean wind, where the air moves to [m/s].
     rain_mm_per_h : float
-        [mm/h]
+        Rain rate [mm/h], at least 0.
     air_density : float
         ρ [kg/m³], above 0.
     share : float
-        Of the horizontal reserve that steady drag may take; the rest is for gusts and turns.
+        Of the horizontal reserve that steady drag may take, 0 to 1; the rest is for gusts and turns.
 
     Returns
     -------
     (...) array
-        [m/s]; −∞ where the wind blows it off its course.
+        V [m/s]; −∞ where the wind blows it off its course.
+
+    Raises
+    ------
+    ValueError
+        If `wind` is not two or three finite numbers, `direction` is not made of numbers, or `rain_mm_per_h` is
+        negative.
+
+    See Also
+    --------
+    reachable_ground_speed : the wind triangle alone.
+    air_speed_held : the speed through the air that it starts from.
+
+    Examples
+    --------
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> from uavlab.weather import ground_speed_held
+    >>> ways = [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)]  # with the wind, against it, up
+    >>> ground_speed_held(LIGHT_QUADROTOR, ways, wind=(6.0, 0.0)).round(1)
+    array([24., 12.,  5.])
     """
     mean, along_it = np.array(checks.three("wind", wind)), checks.numbers("direction", direction)
     rain = float(rain_force(rain_mm_per_h, uav.rain_area))
@@ -204,7 +294,9 @@ def grounded_by(
     Parameters
     ----------
     uav : UAV
+        With its payload.
     weather : Weather
+        With its wind and rain.
     ground_speed : float
         Speed to hold over ground V_d [m/s], at least 0.
     safety_factor : float
@@ -218,7 +310,21 @@ def grounded_by(
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If `ground_speed` is negative or `safety_factor` is below 1.
+
+    See Also
+    --------
+    wind_limit, mean_wind_limit : the limits as numbers.
+    uavlab.resilience.resilience_level : the paper's own table of when not to fly.
+
+    Examples
+    --------
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> from uavlab.weather import Weather, grounded_by
+    >>> grounded_by(LIGHT_QUADROTOR, Weather(forecast_wind=6.0))
+    ()
+    >>> grounded_by(LIGHT_QUADROTOR.loaded(1.0), Weather(forecast_wind=12.0))
+    ('gusts: 21.0 m/s, and the thrust left over holds 19.2 m/s',)
     """
     checks.not_negative("ground_speed", ground_speed)
     mean, gust = weather.reference_wind

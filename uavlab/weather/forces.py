@@ -57,7 +57,25 @@ class Weather:
     Raises
     ------
     ValueError
-        If a value is not one finite number or out of its range; a pressure in Pa is recognised.
+        If `temperature_c`, `humidity_percent`, `pressure_hpa` or `wind_from_deg` is outside of the range above, another
+        attribute is negative, or one is not a single finite number. A pressure in Pa is recognised.
+
+    See Also
+    --------
+    Wind : moving air as a flight has it, from `Wind.from_weather`.
+    grounded_by : what keeps a UAV on the ground in this weather.
+    read_weather : states of the weather from a file.
+
+    Examples
+    --------
+    >>> from uavlab.weather import Weather
+    >>> weather = Weather(temperature_c=30.0, forecast_wind=6.0, measured_wind=7.0, wind_from_deg=270.0)
+    >>> weather
+    <Weather: 30 °C, 50 %, 1013 hPa, wind 7 m/s from 270°, gusts 12.2 m/s, rain 0 mm/h>
+    >>> round(weather.air_density, 3)
+    1.155
+    >>> weather.wind_direction.round(2)
+    array([1., 0.])
     """
 
     temperature_c: float = 15.0
@@ -79,6 +97,12 @@ class Weather:
             checks.not_negative(name, getattr(self, name))
         checks.within("wind_from_deg", self.wind_from_deg, 0.0, 360.0, "degrees")
 
+    def __repr__(self) -> str:
+        mean, gust = self.reference_wind
+        air = f"{self.temperature_c:.3g} °C, {self.humidity_percent:.3g} %, {self.pressure_hpa:.0f} hPa"
+        wind = f"wind {mean:.3g} m/s from {self.wind_from_deg:.0f}°, gusts {gust:.3g} m/s"
+        return f"<Weather: {air}, {wind}, rain {self.rain_mm_per_h:.3g} mm/h>"
+
     @property
     def air_density(self) -> float:
         """Density of the moist air [kg/m³]."""
@@ -97,7 +121,23 @@ class Weather:
 
 
 class ReferenceWind(NamedTuple):
-    """Mean wind and gust to reckon with [m/s]."""
+    """Mean wind and gust to reckon with [m/s].
+
+    Attributes
+    ----------
+    mean, gust : float
+        V_res of REPARE Eq. 3, and the strongest gust [m/s].
+
+    See Also
+    --------
+    reference_wind : from forecast and measurement.
+
+    Examples
+    --------
+    >>> from uavlab.weather import Weather
+    >>> Weather(forecast_wind=4.0).reference_wind
+    ReferenceWind(mean=4.0, gust=7.0)
+    """
 
     mean: float
     gust: float
@@ -127,7 +167,24 @@ def air_density(
     Raises
     ------
     ValueError
-        If a value is out of its range; a pressure in Pa is recognised.
+        If `temperature_c` is not within −60 to 60, `humidity_percent` 0 to 100, or `pressure_hpa` 300 to 1100. A
+        pressure in Pa is recognised.
+
+    See Also
+    --------
+    wind_drag : the force that grows with it.
+
+    References
+    ----------
+    World Meteorological Organization, Guide to Meteorological Instruments and Methods of Observation, WMO-No. 8, 2008.
+
+    Examples
+    --------
+    >>> from uavlab.weather import air_density
+    >>> air_density([0.0, 15.0, 30.0], 0.0, 1013.25).round(3)
+    array([1.292, 1.225, 1.164])
+    >>> air_density(30.0, [0.0, 100.0], 1013.25).round(3)
+    array([1.164, 1.146])
     """
     checks.air(temperature_c, humidity_percent, pressure_hpa)
     celsius = np.asarray(temperature_c, dtype=float)
@@ -169,7 +226,23 @@ def rain_force(
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If `rain_mm_per_h` is negative, `area` or `drop_speed` is not above 0, `restitution` is not within 0 to 1, or
+        `as_printed` is not True or False.
+
+    See Also
+    --------
+    lift_margin : whether the rotors carry it.
+
+    References
+    ----------
+    R. Gunn and G. D. Kinzer, The Terminal Velocity of Fall for Water Droplets in Stagnant Air, Journal of Meteorology,
+    1949: drops of 5 mm fall at 9 m/s.
+
+    Examples
+    --------
+    >>> from uavlab.weather import rain_force
+    >>> rain_force([10.0, 50.0, 100.0], area=0.1).round(4)
+    array([0.0025, 0.0125, 0.025 ])
     """
     checks.not_negative("rain_mm_per_h", rain_mm_per_h)
     checks.positive("area", area)
@@ -189,6 +262,7 @@ def lift_margin(
     Parameters
     ----------
     uav : UAV
+        With its payload.
     rain : float or array
         Force of the rain F_r [N], `rain_force`.
     safety_factor : float
@@ -204,7 +278,19 @@ def lift_margin(
     Raises
     ------
     ValueError
-        If the rain's force is negative or the safety factor below 1.
+        If `rain` is negative, `safety_factor` is below 1, or `as_printed` is not True or False.
+
+    See Also
+    --------
+    rain_force : the force of the rain, REPARE Eq. 1.
+    wind_limit : the gust that the rest of the thrust can hold.
+
+    Examples
+    --------
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> from uavlab.weather import lift_margin
+    >>> [round(float(lift_margin(LIGHT_QUADROTOR.loaded(load), rain=0.1)), 2) for load in (0.0, 1.0, 1.3)]
+    [11.7, 0.91, -2.32]
     """
     checks.not_negative("rain", rain)
     checks.at_least_one("safety_factor", safety_factor)
@@ -241,7 +327,19 @@ def reference_wind(
     Raises
     ------
     ValueError
-        If a wind is negative or the gust factor below 1.
+        If `forecast_mean`, `measured_mean` or `forecast_max` is negative, `gust_factor` is below 1, or `as_printed` is
+        not True or False.
+
+    See Also
+    --------
+    mean_wind : the mean that the UAV measures.
+    Weather : has this as its `reference_wind`.
+
+    Examples
+    --------
+    >>> from uavlab.weather import reference_wind
+    >>> reference_wind(forecast_mean=4.0, measured_mean=6.0, forecast_max=9.0)
+    ReferenceWind(mean=6.0, gust=10.5)
     """
     for name, value in (
         ("forecast_mean", forecast_mean),
@@ -277,8 +375,20 @@ def reachable_ground_speed(air_speed: float, wind: npt.ArrayLike, course: npt.Ar
     Raises
     ------
     ValueError
-        If the crosswind exceeds the air speed: no heading holds the course. If a vector is not finite or the course
-        has no length.
+        If `air_speed` is not above 0 or less than the crosswind, as no heading then holds the course; if `wind` or
+        `course` is not made of two or three finite numbers, or `course` has no length.
+
+    See Also
+    --------
+    course_wind_limit : the strongest wind for a ground speed.
+    ground_speed_held : the same for a UAV, with its thrust and vertical speeds.
+
+    Examples
+    --------
+    >>> from uavlab.weather import reachable_ground_speed
+    >>> winds = [(6.0, 0.0), (0.0, 6.0), (-6.0, 0.0)]  # from behind, across, ahead
+    >>> reachable_ground_speed(10.0, winds, course=(1.0, 0.0)).round(2)
+    array([16.,  8.,  4.])
     """
     checks.positive("air_speed", air_speed)
     wind, course = checks.vectors(wind=wind, course=course)
@@ -327,7 +437,21 @@ def wind_drag(
     Raises
     ------
     ValueError
-        If an argument is not finite or out of its range.
+        If `drag_area` or `air_density` is not above 0, `wind` or `ground_velocity` is not made of two or three finite
+        numbers, both don't have as many, or `as_printed` is not True or False.
+
+    See Also
+    --------
+    air_density : ρ of moist air.
+    wind_limit : the wind whose drag the UAV can just hold.
+
+    Examples
+    --------
+    >>> from uavlab.weather import wind_drag
+    >>> hover = wind_drag((10.0, 0.0), (0.0, 0.0), drag_area=0.06)
+    >>> twice = wind_drag((20.0, 0.0), (0.0, 0.0), drag_area=0.06)
+    >>> f"{hover[0]:.2f} N, and {twice[0] / hover[0]:.0f} times that in twice the wind"
+    '3.67 N, and 4 times that in twice the wind'
     """
     checks.positive("drag_area", drag_area)
     checks.positive("air_density", air_density)

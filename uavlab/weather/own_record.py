@@ -101,6 +101,23 @@ class WeatherRecord:
         Columns of the file that aren't weather.
     name : str
         Of the file.
+
+    See Also
+    --------
+    read_weather : makes one from a CSV file.
+    WeatherRecord.weather : one row as a `Weather`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.weather import WeatherRecord
+    >>> columns = {"temperature_c": np.array([18.0, 21.0]), "wind_speed": np.array([3.0, 5.5])}
+    >>> times = np.array(["2026-03-01T12", "2026-03-01T13"], dtype="datetime64[s]")
+    >>> record = WeatherRecord(columns, times, gaps=(), ignored=(), name="roof")
+    >>> record
+    <WeatherRecord roof: 2 rows of temperature_c, wind_speed>
+    >>> record.assumed
+    ('humidity_percent', 'pressure_hpa', 'wind_from_deg', 'rain_mm_per_h', 'radiation')
     """
 
     columns: Mapping[str, np.ndarray]
@@ -131,10 +148,32 @@ class WeatherRecord:
         at : int, str or datetime64
             A row from 0, or a time in ISO 8601: the last row that isn't after it.
 
+        Returns
+        -------
+        Weather
+            What the file doesn't have (`assumed`) has the defaults of `Weather`.
+
         Raises
         ------
         ValueError
-            If there is no such row or time, or a value is missing there.
+            If `at` is no row of the record or no time in it, or the record has no times; if a value is missing there.
+
+        See Also
+        --------
+        grounded_by : whether a UAV may fly in it.
+        WeatherRecord.row : which row it is.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.weather import WeatherRecord
+        >>> columns = {"temperature_c": np.array([18.0, 21.0]), "wind_speed": np.array([3.0, 5.5])}
+        >>> times = np.array(["2026-03-01T12", "2026-03-01T13"], dtype="datetime64[s]")
+        >>> record = WeatherRecord(columns, times, gaps=(), ignored=(), name="roof")
+        >>> record.weather(1).measured_wind
+        5.5
+        >>> record.weather("2026-03-01T12:40").measured_wind
+        3.0
         """
         row = self.row(at)
         values = {name: float(column[row]) for name, column in self.columns.items()}
@@ -145,7 +184,37 @@ class WeatherRecord:
         return Weather(**values, **wind)
 
     def row(self, at: int | str | np.datetime64) -> int:
-        """The number of a row, or of the last one that isn't after a time."""
+        """The number of a row, or of the last one that isn't after a time.
+
+        Parameters
+        ----------
+        at : int, str or datetime64
+            A row from 0, or a time in ISO 8601.
+
+        Returns
+        -------
+        int
+            From 0.
+
+        Raises
+        ------
+        ValueError
+            If `at` is no row of the record, no time in ISO 8601, before the first time or more than a usual step after
+            the last, or the record has no times.
+
+        See Also
+        --------
+        WeatherRecord.weather : the weather in that row.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.weather import WeatherRecord
+        >>> times = np.array(["2026-03-01T12", "2026-03-01T13"], dtype="datetime64[s]")
+        >>> record = WeatherRecord({"wind_speed": np.array([3.0, 5.5])}, times, gaps=(), ignored=(), name="roof")
+        >>> record.row("2026-03-01T12:40")
+        0
+        """
         if isinstance(at, int | np.integer) and not isinstance(at, bool):
             if not 0 <= at < len(self):
                 raise ValueError(f"at must be a row from 0 to {len(self) - 1}, got {at}")
@@ -159,7 +228,31 @@ class WeatherRecord:
         return row
 
     def place(self, row: int) -> str:
-        """A row in words."""
+        """A row in words.
+
+        Parameters
+        ----------
+        row : int
+            From 0.
+
+        Returns
+        -------
+        str
+            With its time, if the record has times.
+
+        See Also
+        --------
+        WeatherRecord.row : the number of a row.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.weather import WeatherRecord
+        >>> times = np.array(["2026-03-01T12", "2026-03-01T13"], dtype="datetime64[s]")
+        >>> record = WeatherRecord({"wind_speed": np.array([3.0, 5.5])}, times, gaps=(), ignored=(), name="roof")
+        >>> record.place(1)
+        'row 1 (2026-03-01T13:00:00)'
+        """
         return f"row {row}" if self.time is None else f"row {row} ({self.time[row]})"
 
     @property
@@ -181,7 +274,7 @@ class WeatherRecord:
 
 
 def read_weather(path: str | Path) -> WeatherRecord:
-    """Read a record of the weather from a CSV file.
+    r"""Read a record of the weather from a CSV file.
 
     The first row names the columns, each with its unit: "temperature [°F]", "wind speed (km/h)", "pressure_hpa".
     °F, K, km/h, knots, mph, Pa, kPa, inHg and others are converted. Names and units may be in small or capital letters;
@@ -192,6 +285,7 @@ def read_weather(path: str | Path) -> WeatherRecord:
     Parameters
     ----------
     path : str or Path
+        The CSV file, in UTF-8 or else Latin-1.
 
     Returns
     -------
@@ -201,10 +295,30 @@ def read_weather(path: str | Path) -> WeatherRecord:
     Raises
     ------
     ValueError
-        If the file has no row or no known column, a column has no unit or an unknown one, or appears twice; if a value
-        is no number or not to be believed, or times aren't in order. The message says which row and column.
+        If the file at `path` has no row or no known column, a column has no unit or an unknown one, or appears twice;
+        if a value is no number or not to be believed, or times aren't in order. The message says which row and column.
     OSError
-        If the file can't be read.
+        If the file at `path` can't be read.
+
+    See Also
+    --------
+    WeatherRecord.weather : a row as a `Weather`.
+    WeatherRecord.features : its rows for `uavlab.prediction`.
+    greensboro_weather : a year that comes with pvlib.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from uavlab.weather import read_weather
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder, "station.csv")
+    ...     _ = path.write_text("temperature [°F];wind speed (km/h)\n59;18\n68;36\n", encoding="utf-8")
+    ...     record = read_weather(path)
+    >>> record
+    <WeatherRecord station.csv: 2 rows of temperature_c, wind_speed>
+    >>> record.columns["wind_speed"].round(1)
+    array([ 5., 10.])
     """
     path = Path(path)
     header, rows = table_of(path)
@@ -230,6 +344,8 @@ def read_weather(path: str | Path) -> WeatherRecord:
 def mean_wind(samples: npt.ArrayLike, interval: float, averaging_time: float = 60.0) -> np.ndarray:
     """Mean of the wind that was measured last, V_μS over the time t_w (REPARE Eq. 3).
 
+    V_μS = Σ V/n over the last n = t_w/interval samples.
+
     Parameters
     ----------
     samples : (N,) or (N, D) array
@@ -247,7 +363,20 @@ def mean_wind(samples: npt.ArrayLike, interval: float, averaging_time: float = 6
     Raises
     ------
     ValueError
-        If a sample is not finite, or the samples don't cover the averaging time.
+        If `samples` has another shape, is not finite, has a negative speed or doesn't cover `averaging_time`, or if
+        `interval` or `averaging_time` is not above 0.
+
+    See Also
+    --------
+    reference_wind : takes it beside the forecast.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.weather import mean_wind
+    >>> speeds = np.concatenate([np.full(60, 4.0), np.full(60, 7.0)])  # one a second, the wind freshens
+    >>> [float(mean_wind(speeds, 1.0, averaging_time=time)) for time in (30.0, 90.0, 120.0)]
+    [7.0, 6.0, 5.5]
     """
     winds = checks.numbers("samples", samples)
     if winds.ndim not in (1, 2) or (winds.ndim == 2 and winds.shape[1] not in (2, 3)):

@@ -41,6 +41,24 @@ def greensboro_weather() -> pandas.DataFrame:
     ------
     ImportError
         If pvlib is missing.
+
+    See Also
+    --------
+    read_weather : your own record, from a CSV file.
+    uavlab.prediction.synthetic_weather : made-up hours with the same columns.
+
+    References
+    ----------
+    S. Wilcox and W. Marion, Users Manual for TMY3 Data Sets, NREL, 2008.
+
+    Examples
+    --------
+    >>> from uavlab.weather import greensboro_weather
+    >>> hours = greensboro_weather()
+    >>> hours.shape
+    (8760, 6)
+    >>> f"{hours.temperature_c.mean():.1f} °C and {hours.wind_speed.mean():.1f} m/s on average"
+    '14.4 °C and 3.1 m/s on average'
     """
     try:
         import pvlib

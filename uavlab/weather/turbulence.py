@@ -31,10 +31,25 @@ time in units of the time scale L/V."""
 
 
 class DrydenParameters(NamedTuple):
-    """Scale lengths [m] and standard deviations [m/s] of the gusts along, across and vertical, each (3,)."""
+    """Scale lengths [m] and standard deviations [m/s] of the gusts along, across and vertical, each (3,).
+
+    See Also
+    --------
+    dryden_parameters : from the height and the wind.
+
+    Examples
+    --------
+    >>> from uavlab.weather import dryden_parameters
+    >>> dryden_parameters(altitude=30.0, wind_at_6m=7.7)
+    <DrydenParameters: scale lengths 152.46, 152.46, 30.00 m, deviations 1.32, 1.32, 0.77 m/s>
+    """
 
     scale_lengths: np.ndarray
     deviations: np.ndarray
+
+    def __repr__(self) -> str:
+        lengths, deviations = (", ".join(f"{value:.2f}" for value in axes) for axes in self)
+        return f"<DrydenParameters: scale lengths {lengths} m, deviations {deviations} m/s>"
 
 
 def dryden_parameters(altitude: float, wind_at_6m: float) -> DrydenParameters:
@@ -53,11 +68,28 @@ def dryden_parameters(altitude: float, wind_at_6m: float) -> DrydenParameters:
     Returns
     -------
     DrydenParameters
+        Scale lengths L_u, L_v, L_w [m] and standard deviations σ_u, σ_v, σ_w [m/s].
 
     Raises
     ------
     ValueError
-        If the altitude is out of its range or the wind negative.
+        If `altitude` is not within 3.048 to 304.8, or `wind_at_6m` is negative.
+
+    See Also
+    --------
+    dryden_spectrum : how such gusts are spread over frequencies.
+    dryden_gusts : samples of them.
+
+    References
+    ----------
+    MIL-F-8785C, Flying Qualities of Piloted Airplanes, US Department of Defense, 1980.
+
+    Examples
+    --------
+    >>> from uavlab.weather import dryden_parameters
+    >>> low, high = (dryden_parameters(altitude, wind_at_6m=10.0) for altitude in (10.0, 100.0))
+    >>> f"σ along {low.deviations[0]:.2f} m/s at 10 m, {high.deviations[0]:.2f} m/s at 100 m"
+    'σ along 1.89 m/s at 10 m, 1.38 m/s at 100 m'
     """
     checks.within("altitude", altitude, LOWEST, HIGHEST, "m, the low-altitude range of MIL-F-8785C")
     checks.not_negative("wind_at_6m", wind_at_6m)
@@ -93,7 +125,27 @@ def dryden_spectrum(omega: npt.ArrayLike, air_speed: float, altitude: float, win
     Raises
     ------
     ValueError
-        If an argument is out of its range; air speed 0: see `dryden_gusts`.
+        If `omega` or `wind_at_6m` is negative, `altitude` is not within 3.048 to 304.8, or `air_speed` is not above 0;
+        for hovering see `dryden_gusts`.
+
+    See Also
+    --------
+    dryden_gusts : gusts with this spectrum.
+    gust_spectrum : that of any wind.
+
+    References
+    ----------
+    MIL-F-8785C, Flying Qualities of Piloted Airplanes, US Department of Defense, 1980.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.weather import dryden_parameters, dryden_spectrum
+    >>> omega = np.linspace(0.0, 300.0, 300_001)
+    >>> density = dryden_spectrum(omega, air_speed=10.0, altitude=30.0, wind_at_6m=10.0)
+    >>> variance = np.trapezoid(density, omega, axis=0)
+    >>> (variance / dryden_parameters(30.0, 10.0).deviations ** 2).round(2)
+    array([1., 1., 1.])
     """
     checks.not_negative("omega", omega)
     scale, deviations = time_scales(air_speed, altitude, wind_at_6m)
@@ -141,7 +193,28 @@ def dryden_gusts(
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If `duration`, `time_step` or `air_speed` is not above 0, `time_step` is longer than `duration`, `altitude` is
+        not within 3.048 to 304.8, `wind_at_6m` is negative, or `rng` is neither a generator nor a seed.
+
+    See Also
+    --------
+    dryden_spectrum : their spectrum.
+    Wind : takes them along on a flight, `Wind(mean, gusts="dryden")`.
+
+    References
+    ----------
+    MIL-F-8785C, Flying Qualities of Piloted Airplanes, US Department of Defense, 1980.
+
+    Examples
+    --------
+    >>> from uavlab.weather import dryden_gusts, dryden_parameters
+    >>> gusts = dryden_gusts(3600.0, 0.1, air_speed=10.0, altitude=30.0, wind_at_6m=10.0, rng=0)
+    >>> gusts.shape
+    (36000, 3)
+    >>> gusts.std(axis=0).round(1)
+    array([1.7, 1.7, 1. ])
+    >>> dryden_parameters(30.0, 10.0).deviations.round(1)
+    array([1.7, 1.7, 1. ])
     """
     checks.positive("duration", duration)
     checks.positive("time_step", time_step)

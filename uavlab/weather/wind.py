@@ -41,7 +41,28 @@ class Wind:
     Raises
     ------
     ValueError
-        If an attribute is out of its range, or Dryden gusts have no mean wind to come from.
+        If `mean` is not two or three finite numbers, `gusts` is unknown, `deviation` or `rain_mm_per_h` is negative,
+        `correlation` or `air_density` is not above 0, or `gusts` is "dryden" and `mean` has no level part.
+
+    See Also
+    --------
+    Wind.from_weather : the wind of a state of the weather.
+    gust_spectrum : how the gusts are spread over frequencies.
+    uavlab.flight.fly : a flight in this wind.
+
+    References
+    ----------
+    MIL-F-8785C, Flying Qualities of Piloted Airplanes, US Department of Defense, 1980.
+
+    G. E. Uhlenbeck and L. S. Ornstein, On the Theory of the Brownian Motion, Physical Review, 1930.
+
+    Examples
+    --------
+    >>> from uavlab.weather import Wind
+    >>> Wind(mean=(3.0, 4.0), deviation=1.5)
+    <Wind: mean (3, 4, 0) m/s, ou gusts with σ = 1.5 m/s and τ = 1 s, rain 0 mm/h>
+    >>> Wind(mean=(3.0, 4.0)).speed
+    5.0
     """
 
     mean: tuple[float, ...] = (0.0, 0.0, 0.0)
@@ -61,9 +82,50 @@ class Wind:
         if self.gusts == "dryden" and not any(self.mean[:2]):
             raise ValueError("mean is calm, and Dryden gusts take their strength from it: give a wind, or other gusts")
 
+    def __repr__(self) -> str:
+        east, north, up = self.mean
+        gusts = {"none": "no gusts", "dryden": "Dryden gusts"}.get(
+            self.gusts, f"{self.gusts} gusts with σ = {self.deviation:.3g} m/s and τ = {self.correlation:.3g} s"
+        )
+        return f"<Wind: mean ({east:.3g}, {north:.3g}, {up:.3g}) m/s, {gusts}, rain {self.rain_mm_per_h:.3g} mm/h>"
+
     @classmethod
     def from_weather(cls, weather: Weather, gusts: str = "ou", correlation: float = 1.0) -> Wind:
-        """The wind of a state of the weather; its strongest gust counts as 3σ above the mean."""
+        """The wind of a state of the weather; its strongest gust counts as 3σ above the mean.
+
+        The mean blows with V_res of REPARE Eq. 3, and σ = (gust − V_res)/3.
+
+        Parameters
+        ----------
+        weather : Weather
+            Its reference wind, direction, rain and air density are taken.
+        gusts : {"ou", "gaussian", "dryden", "none"}
+            Kind of gusts; "dryden" needs a wind above 0.
+        correlation : float
+            τ [s], above 0; 1 to 5. Not for "dryden".
+
+        Returns
+        -------
+        Wind
+            Level; it blows to where the weather's wind doesn't come from.
+
+        Raises
+        ------
+        ValueError
+            If `gusts` is unknown, `correlation` is not above 0, or `gusts` is "dryden" and `weather` is calm.
+
+        See Also
+        --------
+        Weather : the state of the weather.
+        reference_wind : the mean and the gust that are taken from it.
+
+        Examples
+        --------
+        >>> from uavlab.weather import Weather, Wind
+        >>> wind = Wind.from_weather(Weather(forecast_wind=4.0, forecast_max_wind=8.5, wind_from_deg=270.0))
+        >>> f"{wind.mean[0]:.1f} m/s to the east, σ = {wind.deviation:.1f} m/s"
+        '4.0 m/s to the east, σ = 1.5 m/s'
+        """
         mean, gust = weather.reference_wind
         return cls(
             mean=tuple(mean * weather.wind_direction),
@@ -89,7 +151,47 @@ def wind_of(disturbance: Wind | Weather) -> Wind:
 
 
 def gust_spectrum(wind: Wind, omega: npt.ArrayLike, air_speed: float, altitude: float = 30.0) -> np.ndarray:
-    """One-sided spectral density of gusts (..., 3) [m²/s² per rad/s]: its integral over ω is their variance."""
+    """One-sided spectral density of gusts (..., 3) [m²/s² per rad/s]: its integral over ω is their variance.
+
+    Of a level component, "ou": 2σ²τ/π / (1 + (τω)²); "gaussian": σ²τ/π · [sin(τω/2)/(τω/2)]²; vertical gusts have a
+    quarter of it. "dryden": `dryden_spectrum`.
+
+    Parameters
+    ----------
+    wind : Wind
+        Its `gusts`, `deviation` σ and `correlation` τ are used; of Dryden gusts its mean speed.
+    omega : (...) array
+        Angular frequency ω [rad/s], at least 0.
+    air_speed : float
+        Speed through the air [m/s], above 0; for Dryden gusts only.
+    altitude : float
+        Height above the ground [m], 3.048 to 304.8; for Dryden gusts only.
+
+    Returns
+    -------
+    (..., 3) array
+        Density [m²/s² per rad/s]: along, across and vertical for Dryden gusts, else east, north and up.
+
+    Raises
+    ------
+    ValueError
+        If `omega` is not made of numbers. Of Dryden gusts also if `omega` is negative or not finite, `air_speed` not
+        above 0, or `altitude` not within its range.
+
+    See Also
+    --------
+    Wind : the gusts whose spectrum it is.
+    dryden_spectrum : that of Dryden turbulence.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.weather import Wind, gust_spectrum
+    >>> omega = np.linspace(0.0, 200.0, 20_001)
+    >>> density = gust_spectrum(Wind(deviation=2.0), omega, air_speed=5.0)
+    >>> np.trapezoid(density, omega, axis=0).round(1)  # the variances: 2² level, 1² vertical
+    array([4., 4., 1.])
+    """
     omega = checks.numbers("omega", omega)
     if wind.gusts == "none":
         return np.zeros((*omega.shape, 3))
