@@ -79,7 +79,7 @@ class Flight:
     reason : str
         Where and when it crashed, why it landed, gave up or never took off; empty when it arrived.
     log : (T, 12) array
-        A row each time step, see `uavlab.flight.motion.COLUMNS`.
+        A row each time step; `column` says what stands in it.
     clearance : float
         Least distance of its centre to the obstacles [m], exact up to four voxels; infinite when it never flew.
     energy : Energy, optional
@@ -123,7 +123,8 @@ class Flight:
         Parameters
         ----------
         name : str
-            One of `uavlab.flight.motion.COLUMNS`, such as "thrust" [N] or "speed" [m/s].
+            "time" [s]; position "x", "y", "z" and reference "x_ref", "y_ref", "z_ref" [m]; offset "along", "across"
+            and "up" in the route's frame [m]; "thrust" [N]; "speed" over ground [m/s].
 
         Returns
         -------
