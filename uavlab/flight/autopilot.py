@@ -17,6 +17,21 @@ class Gps(NamedTuple):
     Errors of the position last for many minutes, and no control can see them: a first-order Gauss-Markov process,
     R(t) = σ² exp(−|t|/τ). At the start the autopilot knows where it stands, and the error begins at 0; after a minute
     its σ is 1.5 m.
+
+    See Also
+    --------
+    Autopilot : Flies by it, and refuses values out of their range.
+
+    References
+    ----------
+    R. W. Beard and T. W. McLain, Small Unmanned Aircraft: Theory and Practice, 2012, section 7.5.
+
+    Examples
+    --------
+    >>> from math import exp, sqrt
+    >>> from uavlab.flight import GPS
+    >>> round(GPS.drift * sqrt(1 - exp(-2 * 60 / GPS.correlation)), 2)  # σ east and north after a minute [m]
+    1.51
     """
 
     rate: float = 10.0
@@ -48,6 +63,7 @@ class Autopilot:
     trimmed : bool
         Whether it knows the mean wind, at each moment if that changes. If not, the wind holds the UAV off its route.
     gps : Gps
+        What it knows of where it is; `PERFECT_GPS` knows it exactly.
     monitor : Monitor, optional
         Watches the flight; each flight has a copy of it.
     strategy : {"adaptive", "grounded", "fixed"}
@@ -63,7 +79,23 @@ class Autopilot:
     Raises
     ------
     ValueError
-        If an attribute is out of its range.
+        If `speed`, `acceptance_radius`, `interval`, `gps.rate`, `gps.correlation`, or the `speed_share`, the
+        `natural_frequency` or the `tilt_share` of `controller` is not above 0; the `tilt_share` is above 1;
+        `gps.drift`, `gps.vertical_drift` or `gps.velocity` is negative; or `strategy` is unknown.
+
+    See Also
+    --------
+    fly : Flies a route with it.
+    uavlab.resilience.Monitor : Watches a flight and chooses the controller.
+
+    Examples
+    --------
+    >>> from uavlab.flight import PERFECT_GPS, Autopilot
+    >>> from uavlab.resilience import ConditionCheck, Monitor
+    >>> Autopilot(speed=4.0, gps=PERFECT_GPS)
+    <Autopilot: basic controller, 4 m/s, mean wind known, GPS drift 0 m, no monitor>
+    >>> Autopilot(monitor=Monitor(ConditionCheck(1.6), uav_diameter=1.0), strategy="grounded")
+    <Autopilot: basic controller, cruise speed, mean wind known, GPS drift 4.7 m, monitor: grounded>
     """
 
     controller: Controller = BASIC
@@ -90,6 +122,15 @@ class Autopilot:
         checks.one_of("strategy", self.strategy, STRATEGIES)
         checks.positive_number("acceptance_radius", self.acceptance_radius)
         checks.positive_number("interval", self.interval)
+
+    def __repr__(self) -> str:
+        speed = "cruise speed" if self.speed is None else f"{self.speed:g} m/s"
+        wind = "known" if self.trimmed else "unknown"
+        watched = "no monitor" if self.monitor is None else f"monitor: {self.strategy}"
+        return (
+            f"<Autopilot: {self.controller.name} controller, {speed}, mean wind {wind}, "
+            f"GPS drift {self.gps.drift:g} m, {watched}>"
+        )
 
 
 AUTOPILOT = Autopilot()

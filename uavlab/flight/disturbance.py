@@ -18,16 +18,16 @@ from uavlab.weather.wind import Wind, gust_spectrum
 class OffsetProcess:
     """Offsets from the route as REPARE has them, without a body: a damped spring that white noise shakes.
 
-    x″ + 2 ω_n x′ + ω_n² x = noise on each axis, around a mean; see `uavlab.offsets.offset_paths`. It knows neither
-    thrust nor tilt limits, and the UAV keeps its speed.
+    x″ + 2 ω_n x′ + ω_n² x = noise on each axis, around a mean. It knows neither thrust nor tilt limits, and the UAV
+    keeps its speed.
 
     Attributes
     ----------
     sigma : float or (3,)
-        σ east, north and up under the basic controller [m], at least 0. Under one with another ω_n it is
-        σ·ω_n^(−3/2).
+        σ east, north and up under the basic controller [m], at least 0; 0.5 to 2 is usual. Under one with another ω_n
+        it is σ·ω_n^(−3/2).
     mean : (2,) or (3,)
-        μ [m].
+        μ east, north and up [m].
     rough : bool
         An Ornstein-Uhlenbeck process with the same σ and correlation time, which is beyond its σ again and again. Its
         path has no speed, so the finer the time steps, the more often it is seen to touch a wall: of 8 000 flights of
@@ -37,7 +37,25 @@ class OffsetProcess:
     Raises
     ------
     ValueError
-        If σ is negative, or one of them is not finite or has another shape.
+        If `sigma` is negative, not finite or neither one number nor three, or `mean` is not two or three finite
+        numbers.
+
+    See Also
+    --------
+    uavlab.offsets.offset_paths : The same process on one axis, as paths over time.
+    uavlab.weather.Wind : Gusts as a force on a body, the other kind of disturbance.
+
+    References
+    ----------
+    G. E. Uhlenbeck and L. S. Ornstein, On the Theory of the Brownian Motion, Physical Review, 1930.
+
+    Examples
+    --------
+    σ of one metre, and a steady wind that holds the UAV half a metre to the east of its route:
+
+    >>> from uavlab.flight import OffsetProcess
+    >>> OffsetProcess(1.0, mean=(0.5, 0.0))
+    OffsetProcess(sigma=1.0, mean=(0.5, 0.0, 0.0), rough=False)
     """
 
     sigma: float | tuple[float, ...] = 1.0
@@ -51,9 +69,40 @@ class OffsetProcess:
         object.__setattr__(self, "mean", checks.three("mean", self.mean))
 
     def step(self, time_step: float, controller: Controller) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """σ (3,), and what becomes of position and speed in a time step: transition and noise, (2, 2) each.
+        """How offset and speed go on in a time step, exactly for any step.
 
-        In units of σ and ω_n σ, exact for any step.
+        s(t + Δt) = A s(t) + B n, where s holds the offset in units of σ and the speed in units of ω_n σ, and n two
+        independent standard normal numbers.
+
+        Parameters
+        ----------
+        time_step : float
+            Δt [s], above 0; 0.02 is usual.
+        controller : Controller
+            Its ω_n is the spring's.
+
+        Returns
+        -------
+        sigma : (3,) array
+            σ east, north and up under this controller [m].
+        transition : (2, 2) array
+            A
+        noise : (2, 2) array
+            B
+
+        See Also
+        --------
+        fly : Takes such steps along a route.
+
+        Examples
+        --------
+        >>> from uavlab.flight import OffsetProcess
+        >>> from uavlab.resilience import ADVANCED
+        >>> sigma, transition, noise = OffsetProcess(1.0).step(0.02, ADVANCED)
+        >>> sigma.round(3)  # the advanced controller holds the UAV tighter [m]
+        array([0.494, 0.494, 0.494])
+        >>> transition.round(3)
+        array([[ 0.999,  0.031], [-0.031,  0.938]])
         """
         turn = controller.natural_frequency * time_step
         if self.rough:  # no speed
@@ -82,12 +131,15 @@ def offset_sigma(
     Parameters
     ----------
     uav : UAV
+        Its mass and drag area count.
     wind : Wind
+        Its mean and gusts.
     ground_velocity : (2,) or (3,) array
-        Of the UAV [m/s].
+        Of the UAV [m/s]; it hovers by default.
     altitude : float
-        For Dryden gusts [m].
+        For Dryden gusts, 3 to 300 [m].
     controller : Controller
+        Its ω_n counts.
 
     Returns
     -------
@@ -97,7 +149,21 @@ def offset_sigma(
     Raises
     ------
     ValueError
-        If the air stands still relative to the UAV: small gusts then have no force.
+        If `ground_velocity` is not two or three finite numbers, or that of the wind, so that the air stands still
+        relative to the UAV and small gusts have no force; or, for Dryden gusts, if `altitude` is out of its range.
+
+    See Also
+    --------
+    fly : What it predicts.
+    uavlab.weather.gust_spectrum : S(ω) of the gusts.
+
+    Examples
+    --------
+    >>> from uavlab.flight import offset_sigma
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> from uavlab.weather import Wind
+    >>> offset_sigma(LIGHT_QUADROTOR, Wind((6, 0), deviation=2.0)).round(3)  # along the wind, across it, up [m]
+    array([0.34 , 0.175, 0.087])
     """
     from scipy.integrate import quad
 

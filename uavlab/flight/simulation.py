@@ -119,7 +119,9 @@ def fly(
     Parameters
     ----------
     route : Route or Curve
+        From its first point to its last; longer than 0.
     city : City
+        What can be hit.
     uav : UAV
         Its body is a ball of its diameter; it collides when that touches an obstacle. `City.ground` is one; the open
         floor of a city without it is none.
@@ -127,12 +129,13 @@ def fly(
         What the air does, or the offsets themselves; or a function of the time [s] that returns one of these, always
         the same kind.
     autopilot : Autopilot
+        Controller, speed, GPS and monitor.
     rng : numpy.random.Generator or int
         The seed of `monte_carlo`, whose flight this is.
     number : int
-        Which of its flights.
+        Which of its flights, from 0 on.
     time_step : float
-        [s], at most 0.2/ω_n.
+        [s], above 0, at most 0.2/ω_n; 0.02 is usual.
 
     Returns
     -------
@@ -144,8 +147,28 @@ def fly(
     Raises
     ------
     ValueError
-        If the route doesn't arrive, the time step is too long for the controller, or another argument is out of its
-        range.
+        If `route` doesn't arrive or has no length; `city`, `uav`, `disturbance` or `autopilot` is of another kind, or
+        `disturbance` changes its kind in flight; the `speed_share` of the controller is not from 0.01 to 10; `number`
+        is no whole number or negative; `rng` is neither generator nor seed; or `time_step` is not above 0, above
+        0.2/ω_n, 0.04/ω_n for rough offsets or 1/`gps.rate` in a wind, or so short that the flight has more than
+        5 million steps.
+
+    See Also
+    --------
+    monte_carlo : Many flights.
+    uavlab.spline.smooth : Makes a route a curve that is flown without a stop.
+    uavlab.plot.in_flight : Draws how a flight went.
+
+    Examples
+    --------
+    >>> from uavlab.flight import fly
+    >>> from uavlab.planners import least_risk
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> from uavlab.weather import Wind
+    >>> campus = reference_campus()
+    >>> route = least_risk(campus, *CAMPUS_FLIGHT)
+    >>> fly(route, campus.city, campus.uav, Wind((6, 0)), rng=1)
+    <Flight: arrived after 58.9 s>
     """
     checks.whole("number", number, least=0)
     setup, grounded = setup_of(route, city, uav, disturbance, autopilot, time_step)
@@ -179,9 +202,9 @@ def monte_carlo(
     rng : numpy.random.Generator or int
         Same seed, same flights.
     flights : int
-        N, at least 1.
+        N, 1 to a million; a thousand is usual.
     every : float
-        How often offsets are kept [s].
+        How often offsets are kept [s], above 0.
     jobs : int, optional
         Processes, see `uavlab.sweep`.
     progress : bool
@@ -190,11 +213,29 @@ def monte_carlo(
     Returns
     -------
     Flights
+        Outcomes, offsets and energy of all.
 
     Raises
     ------
     ValueError
-        As for `fly`.
+        If `flights` is no whole number from 1 to a million, `every` is not above 0, `jobs` is 0 or no whole number, or
+        another argument is wrong as for `fly`.
+
+    See Also
+    --------
+    fly : One of these flights with all its steps, by its number.
+    crash_rate : How many of 1 000 crash, with an interval.
+    uavlab.offsets.collision_probability : The same beside one wall, by theory.
+
+    Examples
+    --------
+    >>> from uavlab.flight import OffsetProcess, monte_carlo
+    >>> from uavlab.planners import least_risk
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> campus = reference_campus()
+    >>> route = least_risk(campus, *CAMPUS_FLIGHT)
+    >>> monte_carlo(route, campus.city, campus.uav, OffsetProcess(1.5), rng=1, flights=100)
+    <Flights: 93 arrived, 7 crashed>
     """
     checks.whole("flights", flights, least=1, most=MOST_FLIGHTS)
     checks.positive_number("every", every)

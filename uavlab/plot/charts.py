@@ -39,14 +39,34 @@ def front(routes: Sequence[Route], *marked: Route | Mapping[str, Route], label: 
     routes : sequence of Route
         As from `pareto_front`.
     marked : Route, or mapping
-        Others to compare, by name if it is a mapping, each with its cost in the same unit.
+        Others to compare, by name if it is a mapping, each with its cost in the same unit; the first five are drawn.
     label : str
         Of the vertical axis, with a unit.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Length [m] across, risk up on a logarithmic scale.
 
     Raises
     ------
     ValueError
-        If none of the routes arrives.
+        If `routes` is no sequence of `Route` or none of them arrives, or one of `marked` is neither a route nor a
+        mapping of routes.
+
+    See Also
+    --------
+    uavlab.planners.pareto_front : Finds the front.
+    risk : Shows one of the routes on the map.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.planners import pareto_front
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> figure = plot.front(pareto_front(reference_campus(), *CAMPUS_FLIGHT))
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_yscale()
+    ('length [m]', 'log')
     """
     if not isinstance(routes, Sequence):
         raise ValueError(f"routes must be a list, as from pareto_front, got {type(routes).__name__}")
@@ -77,22 +97,44 @@ def convergence(
 ) -> Figure:
     """How planners came near the exact optimum: median gap over maps and seeds, with a band between the quartiles.
 
-    The gap is even up to 10 % and by factors beyond. A line begins where half of the runs have a route, and a band
-    ends where a quarter of them has none.
+    The scale is linear up to a gap of 10 % and logarithmic beyond. A line begins where half of the runs have a route,
+    and a band ends where a quarter of them has none.
 
     Parameters
     ----------
     comparison : Comparison
+        Of one to six planners.
     by : {"evaluations", "iterations"}
         What counts as effort.
     until : int, optional
-        Last evaluation or iteration to show; by default all of them.
+        Last evaluation or iteration to show, at least 2; by default all of them.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Effort across, gap [%] up.
 
     Raises
     ------
     ValueError
-        If `by` is neither, `until` is below 2, there are more than six planners, or no planner has a route in half of
-        its runs.
+        If `comparison` is no `Comparison`, has more than six planners, or none that has a route in half of its runs;
+        `by` is neither "evaluations" nor "iterations"; or `until` is no whole number of at least 2.
+
+    See Also
+    --------
+    uavlab.planners.compare_planners : Makes the runs.
+    uavlab.planners.optimality_gap : What is drawn, of one route.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.planners import ant_colony, compare_planners
+    >>> from uavlab.risk import reference_campus
+    >>> ants = {"ants": ant_colony}
+    >>> comparison = compare_planners(ants, reference_campus(), seeds=range(2), budget=200, progress=False)
+    >>> figure = plot.convergence(comparison)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('evaluations made', 'gap to the exact optimum')
     """
     if not isinstance(comparison, Comparison):
         raise ValueError(f"comparison must be a Comparison, as from compare_planners, got {type(comparison).__name__}")
@@ -139,10 +181,47 @@ def finite_or_nan(values: np.ndarray) -> np.ndarray:
 
 
 def profile(city: City, *routes: Drawn, safe_distance: float | None = None) -> Figure:
-    """Height and clearance along routes, with the distance to keep as a dashed line if it is given [m].
+    """Height and clearance along routes, with the distance to keep as a dashed line if it is given.
 
     On level ground heights are counted from it. Else they are z of the map, and the ground below each route is an
     area: brown, or of several routes in their colours. Dotted lines are the tops of the occupied voxels below.
+
+    Parameters
+    ----------
+    city : City
+        To which the clearance is measured.
+    routes : Route or Curve, or mapping
+        By name if it is a mapping.
+    safe_distance : float, optional
+        Distance to keep [m], above 0; 1 to 6 is usual.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Height [m] above, clearance [m] below, both over the distance flown [m].
+
+    Raises
+    ------
+    ValueError
+        If `city` is no `City`, one of `routes` is neither a route nor a curve, or `safe_distance` is not above 0.
+
+    See Also
+    --------
+    plan : The same routes from above.
+    curve_profile : Curvature and pitch along curves.
+    uavlab.resilience.safe_distance : The distance to keep in a wind.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar
+    >>> city = table1_city()
+    >>> figure = plot.profile(city, astar(city, (90, 18, 30), (50, 44, 30), min_clearance=3), safe_distance=3.0)
+    >>> [axes.get_ylabel() for axes in figure.axes]
+    ['height above the ground [m]', 'clearance [m]']
+    >>> f"{figure.axes[1].lines[0].get_ydata().min():.2f} m"  # the least clearance on the way
+    '3.50 m'
     """
     planned = drawn_routes(city, routes)
     if safe_distance is not None:
@@ -199,7 +278,34 @@ def tops_below(city: City, points: np.ndarray) -> np.ndarray:
 
 
 def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
-    """Named values as horizontal bars, each with its number; `label` names the quantity and its unit."""
+    """Named values as horizontal bars, each with its number.
+
+    Parameters
+    ----------
+    values : dict of float
+        By name, drawn from top to bottom.
+    label : str
+        The quantity and its unit, below the axis.
+    title : str
+        Above the bars; none by default.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel, a bar for each name.
+
+    See Also
+    --------
+    crash_rates : Rates with their intervals.
+    profile : How a quantity changes along a route.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> figure = plot.bars({"A*": 66.4, "any angle": 63.9}, "length [m]")
+    >>> [text.get_text() for text in figure.axes[0].texts]
+    ['66.4', '63.9']
+    """
     figure, axes = plt.subplots(figsize=(6.4, 0.5 * len(values) + 1.1), dpi=DPI, layout="constrained")
     drawn = axes.barh([plain(name) for name in values], list(values.values()), color=ROUTE_COLORS[1])
     axes.bar_label(drawn, [f"{v:,.0f}" if abs(v) >= 100 else f"{v:.3g}" for v in values.values()], padding=3)

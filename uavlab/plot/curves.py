@@ -38,20 +38,45 @@ def curve_profile(
 ) -> Figure:
     """Curvature and pitch along curves, with the papers' limits and ours (RISK-ACO Figs 9-10, PSO-BAS Figs 7-8).
 
+    A bank holds a level turn up to κ = g·tan(bank)/v²; the papers ask for κ below 1 per voxel.
+
     Parameters
     ----------
     curves : Curve, or mapping of curves by name
+        At least one, each in a colour of its own.
     speed : float
-        v [m/s], above 0: a bank holds a level turn up to the curvature g·tan(bank)/v².
+        v [m/s], above 0; 5 to 16 is usual.
     cell : float
-        Edge of a voxel [m], above 0: the papers ask for a curvature below 1 per voxel.
+        Edge of a voxel [m], above 0; 1 to 5 is usual.
     bank, max_pitch : float
-        [rad]
+        Limits of the bank, below π/2, and of the pitch [rad], above 0.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Curvature [1/m] above, pitch [°] below, both over the distance flown [m].
 
     Raises
     ------
     ValueError
-        If there is no curve, or a number is not above 0.
+        If `curves` is empty or holds anything else than curves, or `speed`, `cell`, `bank` or `max_pitch` is not
+        above 0.
+
+    See Also
+    --------
+    uavlab.spline.feasibility : Says whether the limits hold.
+    uavlab.spline.allowed_speed : How fast a curvature can be flown.
+    corner : Where curves pass a corner.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab import plot
+    >>> from uavlab.spline import Curve
+    >>> curve = Curve(np.array([[10.0, 10, 30], [40, 10, 30], [40, 40, 30]]), planner="bend")
+    >>> figure = plot.curve_profile(curve, speed=8.0, cell=5.0)
+    >>> [text.get_text() for text in figure.axes[0].texts]
+    ['papers: 1 per\\nvoxel of 5 m', '30° of bank\\nat 8 m/s']
     """
     drawn = drawn_curves(curves)
     for name, value in (("speed", speed), ("cell", cell), ("bank", bank), ("max_pitch", max_pitch)):
@@ -96,8 +121,9 @@ def corner(
     Parameters
     ----------
     city : City
+        Whose obstacles are shown.
     curves : Curve, or mapping of curves by name
-        A panel for each.
+        A panel for each, at least one.
     center : (3,) array
         Where to look [m].
     reach : float
@@ -107,10 +133,34 @@ def corner(
     route : Route, or mapping with one, optional
         What was smoothed; drawn dashed.
 
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A panel for each curve, with its least clearance and its sharpest curvature in the title.
+
     Raises
     ------
     ValueError
-        If there is no curve, the point's height isn't on the map, or a number is not above 0.
+        If `city` is no `City`; `curves` is empty or holds anything else than curves; `center` is not three finite
+        numbers or its height lies outside of the map; `reach` or `uav_diameter` is not above 0; or `route` is no
+        route.
+
+    See Also
+    --------
+    uavlab.spline.smooth : Makes curves that touch nothing.
+    curve_profile : Curvature and pitch along curves.
+    section : The whole map at a height.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab import plot
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.spline import Curve
+    >>> curve = Curve(np.array([[50.0, 12, 30], [58, 10, 30], [66, 18, 30], [72, 10, 30]]), planner="through")
+    >>> figure = plot.corner(table1_city(), curve, center=(64, 15, 30), reach=8.0, uav_diameter=2.0)
+    >>> figure.axes[0].get_title()
+    'through: 0.00 m clear, κ ≤ 0.33 1/m'
     """
     planned = drawn_routes(city, () if route is None else (route,))
     drawn = drawn_curves(curves)

@@ -48,6 +48,7 @@ def tracks(
     Parameters
     ----------
     city : City
+        Its buildings are grey.
     flights : mapping of sequences of Flight
         By name, as that of a planner; an empty one leaves the panel to its route.
     routes : mapping of Route or Curve, optional
@@ -56,10 +57,33 @@ def tracks(
     area : (west, east, south, north), optional
         Part of the map to show [m]; by default all of it.
 
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A panel for each name, with how many flights crashed in its title.
+
     Raises
     ------
     ValueError
-        If there is no name, or what stands behind it isn't flights.
+        If `city` is no `City`, `flights` and `routes` together have no name, what stands behind a name in `flights`
+        isn't flights, or what stands behind one in `routes` is neither a route nor a curve.
+
+    See Also
+    --------
+    uavlab.flight.fly : Makes the flights.
+    in_flight : How flights went over time.
+    uavlab.scene.show : The same in three dimensions.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.flight import OffsetProcess, fly
+    >>> from uavlab.planners import least_risk
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> campus = reference_campus()
+    >>> flight = fly(least_risk(campus, *CAMPUS_FLIGHT), campus.city, campus.uav, OffsetProcess(1.0), rng=1)
+    >>> plot.tracks(campus.city, {"least risk": [flight]}).axes[0].get_title()
+    'least risk: 0 of 1 crash'
     """
     planned = {route.planner: route for route in drawn_routes(city, [routes or {}])}
     named = {name: list(named_flights(flights.get(name, ())).values()) for name in (planned | dict(flights))}
@@ -104,19 +128,40 @@ def tracks(
 
 
 def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01) -> Figure:
-    """Crashes per 1 000 flights with their intervals, by factors: a group for each case, a colour for each planner.
+    """Crashes per 1 000 flights with their intervals on a logarithmic scale, a group for each case.
+
+    Each planner has a colour. A rate of 0 is an arrow down from the upper end of its interval.
 
     Parameters
     ----------
     rates : mapping of mappings
-        Case → planner → what `uavlab.flight.crash_rate` returns.
+        Case → planner → what `uavlab.flight.crash_rate` returns; one to six planners.
     least : float
-        Where the axis begins; a rate of 0 is an arrow down from the upper end of its interval.
+        Where the axis begins [crashes per 1 000 flights], above 0.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel, a row for each planner in each case.
 
     Raises
     ------
     ValueError
-        If there is no case, or there are more than six planners.
+        If `rates` has no planner or more than six, or `least` is not above 0.
+
+    See Also
+    --------
+    uavlab.flight.crash_rate : A rate with its interval.
+    bars : Values without intervals.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.flight import Rate
+    >>> rates = {"calm": {"A*": Rate(0.0, 0.0, 3.7)}, "gusts": {"A*": Rate(70.0, 55.0, 87.6)}}
+    >>> figure = plot.crash_rates(rates)
+    >>> [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    ['calm', 'gusts']
     """
     planners = list(dict.fromkeys(name for by_planner in rates.values() for name in by_planner))
     if not 1 <= len(planners) <= len(ROUTE_COLORS):
@@ -157,10 +202,31 @@ def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
     limits : float
         Thrust limits [N] to mark, by name.
 
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels over the time in flight [s].
+
     Raises
     ------
     ValueError
-        If there is none that flew, or there are more than six.
+        If `flights` holds anything else than flights, none that flew, or more than six that did.
+
+    See Also
+    --------
+    uavlab.flight.fly : Makes a flight.
+    tracks : Flights from above.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.flight import OffsetProcess, fly
+    >>> from uavlab.planners import least_risk
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> campus = reference_campus()
+    >>> flight = fly(least_risk(campus, *CAMPUS_FLIGHT), campus.city, campus.uav, OffsetProcess(1.0), rng=1)
+    >>> [axes.get_ylabel() for axes in plot.in_flight({"gusts": flight}).axes]
+    ['offset across the route,\\nleft is positive [m]', 'speed over ground\\n[m/s]', 'thrust [N]']
     """
     flown = {name: flight for name, flight in named_flights(flights).items() if len(flight.log)}
     if not 1 <= len(flown) <= len(CONVERGENCE_STYLES):
@@ -193,14 +259,34 @@ def safety_domain(samples: npt.ArrayLike, **domains: SafetyDomain) -> Figure:
     Parameters
     ----------
     samples : (N, 2) array
-        Offsets across the route and up [m], such as `Flights.samples`.
+        Offsets across the route and up [m], such as `Flights.samples`; N at least 3.
     domains : SafetyDomain
         By name (`_` for a blank), at most three.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Offset across [m] and up [m], density [1/m²] as colour.
 
     Raises
     ------
     ValueError
-        If the samples aren't (N, 2) and finite, or there are more than three domains.
+        If `samples` hasn't shape (N, 2), isn't finite, has fewer than 3 rows or is constant on an axis, or there are
+        more than three `domains`.
+
+    See Also
+    --------
+    uavlab.offsets.safety_domain : Fits a domain to offsets.
+    uavlab.flight.monte_carlo : Makes offsets, by flying.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab import offsets, plot
+    >>> samples = np.random.default_rng(0).normal(size=(5000, 2)) * (1.0, 0.5)
+    >>> figure = plot.safety_domain(samples, two_axes=offsets.safety_domain(samples))
+    >>> figure.axes[0].get_legend().get_texts()[0].get_text()  # 99.73 % are meant
+    'two axes: 99.74% inside'
     """
     points = checks.samples(samples, least=3, axes=2)
     if len(domains) > 3:

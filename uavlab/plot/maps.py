@@ -46,8 +46,35 @@ def plan(city: City, *routes: Drawn) -> Figure:
     Parameters
     ----------
     city : City
+        Its columns of voxels are grey, by the height of their tops.
     routes : Route or Curve, or mapping
-        Those without points are named in the legend.
+        By name if it is a mapping; those without points are named in the legend.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One map with equal scales, in metres.
+
+    Raises
+    ------
+    ValueError
+        If `city` is no `City`, or one of `routes` is neither a route nor a curve; a list of them has to be unpacked.
+
+    See Also
+    --------
+    section : The map cut at a height.
+    profile : Height and clearance along the routes.
+    still : The same in three dimensions.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar
+    >>> city = table1_city()
+    >>> figure = plot.plan(city, astar(city, (90, 18, 30), (50, 44, 30)))
+    >>> figure.legends[0].get_texts()[0].get_text()
+    'A*, 66.4 m'
     """
     planned = drawn_routes(city, routes)
     figure, axes = new_figure(6.4, 5.4)
@@ -82,10 +109,11 @@ def section(
     Parameters
     ----------
     city : City
+        What to cut.
     height : float
-        Where to cut, z [m].
+        Where to cut, z [m], on the map.
     values : (nx, ny, nz) array, optional
-        What to colour; the clearance by default.
+        What to colour, a value for each voxel; the clearance by default.
     routes : Route or Curve, or mapping
         Seen from above.
     label : str
@@ -93,10 +121,28 @@ def section(
     norm : matplotlib.colors.Normalize, optional
         From values to colours; by default evenly over the values shown.
 
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One map with equal scales, in metres, and its colour bar.
+
     Raises
     ------
     ValueError
-        If the height lies outside of the map.
+        If `city` is no `City`, `height` lies outside of the map, or one of `routes` is neither a route nor a curve.
+
+    See Also
+    --------
+    risk : The same for the rate of a risk map.
+    plan : The city from above.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.city import table1_city
+    >>> figure = plot.section(table1_city(), 30.0)
+    >>> figure.axes[0].get_title()
+    'Table 1, 30 m above the ground (buildings black)'
     """
     planned = drawn_routes(city, routes)
     k = level_of(city, height)
@@ -121,13 +167,14 @@ def field(
     spacing: float = 3.0,
     **setting: Any,
 ) -> Figure:
-    """A potential field in a horizontal section: its potential as colours and lines, arrows along its force.
+    """A potential field in a horizontal section: its potential U as colours and lines, arrows along its force −∇U.
 
     Parameters
     ----------
     city : City
+        Whose obstacles repel.
     height : float
-        Where to cut, z [m].
+        Where to cut, z [m], on the map.
     goal : (3,) array
         What attracts [m].
     routes : Route or Curve, or mapping
@@ -135,14 +182,38 @@ def field(
     area : (west, east, south, north), optional
         Part of the map to show [m]; by default all of it.
     spacing : float
-        From arrow to arrow [m].
+        From arrow to arrow [m], above 0.
     setting
-        Of the field, as for `potential_forces`.
+        Of the field, as for `uavlab.planners.potential_forces`: `pull`, `push`, `reach`, `attraction`, `obstacles`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One map with equal scales, in metres, and its colour bar.
 
     Raises
     ------
     ValueError
-        If the height lies outside of the map, or an argument is out of its range.
+        If `city` is no `City`, `height` lies outside of the map, `goal` is not three finite numbers, one of `routes`
+        is neither a route nor a curve, `spacing` is not above 0, or one of `setting` is wrong as for
+        `uavlab.planners.potential_forces`.
+
+    See Also
+    --------
+    uavlab.planners.potential_forces : What is drawn.
+    uavlab.planners.potential_field : Follows the force.
+
+    References
+    ----------
+    O. Khatib, Real-Time Obstacle Avoidance for Manipulators and Mobile Robots, 1986.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.city import table1_city
+    >>> figure = plot.field(table1_city(), 30.0, (50, 44, 30), area=(66, 96, 20, 32), reach=3.0)
+    >>> figure.axes[0].child_axes[0].get_ylabel()
+    'potential U [unit of force · m]'
     """
     planned = drawn_routes(city, routes)
     checks.positive("spacing", spacing)
@@ -179,20 +250,43 @@ def field(
 def risk(risk_map: RiskMap, height: float, *routes: Drawn) -> Figure:
     """The risk of flying at a height; buildings black, hatched where the UAV would be too low.
 
-    Colours are a scale of factors, the same at all heights.
+    Colours are on a logarithmic scale, the same at all heights.
 
     Parameters
     ----------
     risk_map : RiskMap
+        Its rate is shown.
     height : float
-        Where to cut, z [m].
+        Where to cut, z [m], on the map.
     routes : Route or Curve, or mapping
         Seen from above.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One map with equal scales, in metres, and its colour bar.
 
     Raises
     ------
     ValueError
-        If the height lies outside of the map.
+        If `risk_map` is no `RiskMap`, `height` lies outside of the map, or one of `routes` is neither a route nor a
+        curve.
+
+    See Also
+    --------
+    layers : What the risk was made from.
+    risk_norm : The scale of the colours.
+    front : Length against risk of several routes.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.planners import least_risk
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> campus = reference_campus()
+    >>> figure = plot.risk(campus, 30.0, least_risk(campus, *CAMPUS_FLIGHT))
+    >>> figure.axes[0].get_title()
+    'reference campus, 30 m above the ground (too low hatched)'
     """
     checks.instance("risk_map", risk_map, RiskMap)
     city = risk_map.city
@@ -208,7 +302,36 @@ def risk(risk_map: RiskMap, height: float, *routes: Drawn) -> Figure:
 
 
 def layers(risk_map: RiskMap) -> Figure:
-    """What a risk map was made from: people, shelter and cars, on three plans."""
+    """What a risk map was made from: people, shelter and cars, on three plans.
+
+    Parameters
+    ----------
+    risk_map : RiskMap
+        Its population density, shelter and share of ground under cars are shown.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three maps, each with its colour bar below.
+
+    Raises
+    ------
+    ValueError
+        If `risk_map` is no `RiskMap`.
+
+    See Also
+    --------
+    risk : The risk that they make at a height.
+    uavlab.risk.osm_layers : Makes such layers for a real place.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.risk import reference_campus
+    >>> figure = plot.layers(reference_campus())
+    >>> figure.axes[3].get_xlabel()  # below the first map
+    'thousands of people per km²'
+    """
     checks.instance("risk_map", risk_map, RiskMap)
     figure, panels = plt.subplots(1, 3, figsize=(11.4, 4.0), dpi=DPI, layout="constrained", sharey=True)
     shown = (
@@ -230,13 +353,34 @@ def expansions(city: City, *routes: Drawn) -> Figure:
     Parameters
     ----------
     city : City
-    routes : Route or Curve, or mapping
-        Planned with `record=True`.
+        On which the routes were planned.
+    routes : Route, or mapping
+        At least one, planned with `record=True`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A map for each route, with how many nodes were expanded in its title.
 
     Raises
     ------
     ValueError
-        If a route didn't record its order, or none is given.
+        If `city` is no `City`, or `routes` is empty or holds one that didn't record its order.
+
+    See Also
+    --------
+    uavlab.planners.astar : A search that can record its order.
+    uavlab.scene.show : Shows the order in three dimensions, as an animation.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar
+    >>> city = table1_city()
+    >>> searches = [astar(city, (90, 18, 30), (50, 44, 30), heuristic=h, record=True) for h in ("zero", "octile")]
+    >>> [axes.get_title() for axes in plot.expansions(city, *searches).axes[:2]]
+    ['zero: 235,320 expanded', 'octile: 18,007 expanded']
     """
     searches = drawn_routes(city, routes)
     if not searches or any("order" not in route.info for route in searches):
@@ -264,6 +408,29 @@ def risk_norm(risk_map: RiskMap) -> LogNorm:
     """From risk to colours by factors: from the least above 0 to the greatest where the UAV may fly, or farther down.
 
     It spans a factor of ten at least, so that nearly equal risks look so, and the bar can be read.
+
+    Parameters
+    ----------
+    risk_map : RiskMap
+        Whose rates [1/h] are to be coloured.
+
+    Returns
+    -------
+    matplotlib.colors.LogNorm
+        0 at the least risk, 1 at the greatest; what lies beyond is clipped.
+
+    See Also
+    --------
+    risk : Colours a map by it.
+    draw_map : Takes it as `norm`.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.risk import reference_campus
+    >>> norm = plot.risk_norm(reference_campus())
+    >>> f"{norm.vmin:.1e} to {norm.vmax:.1e} deaths per hour of flight"
+    '2.7e-08 to 1.6e-05 deaths per hour of flight'
     """
     rates = risk_map.rate[risk_map.flyable & (risk_map.rate > 0)]
     least, most = (rates.min(), rates.max()) if len(rates) else (1e-9, 1e-9)
@@ -271,6 +438,30 @@ def risk_norm(risk_map: RiskMap) -> LogNorm:
 
 
 def ground_risk(risk_map: RiskMap) -> np.ndarray:
-    """Risk in the lowest voxel of each column where the UAV may fly, (nx, ny) [1/h]."""
+    """Risk in the lowest voxel of each column where the UAV may fly.
+
+    Parameters
+    ----------
+    risk_map : RiskMap
+        Its rate is looked at where it is flyable.
+
+    Returns
+    -------
+    (nx, ny) array
+        r [1/h], deaths per hour of flight.
+
+    See Also
+    --------
+    risk : A figure of the risk at a height.
+    draw_map : Draws such an array.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.risk import reference_campus
+    >>> campus = reference_campus()
+    >>> plot.ground_risk(campus).shape == campus.city.shape[:2]
+    True
+    """
     lowest = risk_map.flyable.argmax(axis=2)
     return np.take_along_axis(risk_map.rate, lowest[..., None], axis=2)[..., 0]

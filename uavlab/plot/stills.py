@@ -53,13 +53,41 @@ def still(
     Parameters
     ----------
     city : City
+        Drawn from its buildings, or from its voxels where it knows no buildings.
     routes : Route or Curve, or mapping
+        By name if it is a mapping.
     risk : RiskMap, optional
         Paints the ground with the risk just above it.
     flights : sequence of Flight, or mapping
         Their tracks, by name if it is a mapping; a crash is a red X. Routes are drawn thinner then.
     elevation_deg, azimuth_deg : float
-        From where it is seen [degrees]: height above the horizon, direction counted from east.
+        From where it is seen [degrees]: height above the horizon, direction counted from east to north.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel in three dimensions.
+
+    Raises
+    ------
+    ValueError
+        If `city` is no `City`, one of `routes` is neither a route nor a curve, `risk` is no `RiskMap`, or `flights`
+        holds anything else than flights.
+
+    See Also
+    --------
+    uavlab.scene.show : The scene to turn and fly through.
+    plan : The same from above.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar
+    >>> city = table1_city()
+    >>> figure = plot.still(city, astar(city, (90, 18, 30), (50, 44, 30)), azimuth_deg=-120.0)
+    >>> figure.axes[0].get_zlabel(), figure.axes[0].azim
+    ('z, up [m]', -120.0)
     """
     planned = drawn_routes(city, routes, risk)
     figure = plt.figure(figsize=(7.2, 5.4), dpi=DPI)

@@ -27,7 +27,33 @@ DPI = 100
 
 
 def route_colors(count: int) -> list[str]:
-    """A colour for each of `count` routes, as #rrggbb."""
+    """A colour for each of several routes; after six they come again.
+
+    Parameters
+    ----------
+    count : int
+        How many routes.
+
+    Returns
+    -------
+    list of str
+        As #rrggbb.
+
+    See Also
+    --------
+    plan : Draws routes in these colours.
+
+    References
+    ----------
+    M. Okabe and K. Ito, Color Universal Design: How to Make Figures and Presentations That Are Friendly to Colorblind
+    People, 2008.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> plot.route_colors(2)
+    ['#D55E00', '#0072B2']
+    """
     return [ROUTE_COLORS[i % len(ROUTE_COLORS)] for i in range(count)]
 
 
@@ -66,11 +92,71 @@ def named_routes(drawn: Drawn) -> list[Route]:
 
 
 def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
+    """An empty figure with one panel, in the layout and resolution of all figures here.
+
+    Parameters
+    ----------
+    width, height : float
+        [inches], above 0; 6.4 and 4 to 5.4 are usual.
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+        To be given to `finished` in the end.
+    axes : matplotlib.axes.Axes
+        To draw on.
+
+    See Also
+    --------
+    draw_map : Draws values on the ground plan.
+    finished : Closes the figure for pyplot.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> figure, axes = plot.new_figure(6.4, 4.0)
+    >>> plot.finished(figure).get_size_inches().tolist()
+    [6.4, 4.0]
+    """
     return plt.subplots(figsize=(width, height), dpi=DPI, layout="constrained")
 
 
 def draw_map(axes: Axes, city: City, values: np.ndarray, colors, **limits):
-    """Values (nx, ny) on the ground plan, with axes in metres and equal scales."""
+    """Values on the ground plan, with axes in metres and equal scales.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        To draw on.
+    city : City
+        Whose columns of voxels the values belong to.
+    values : (nx, ny) array
+        One for each column, in any unit; NaN leaves it out.
+    colors : str or matplotlib.colors.Colormap
+        Such as `SEQUENTIAL`.
+    limits
+        For `matplotlib.axes.Axes.imshow`, such as `vmin`, `vmax` or `norm`.
+
+    Returns
+    -------
+    matplotlib.image.AxesImage
+        For a colour bar.
+
+    See Also
+    --------
+    new_figure : An empty figure.
+    section : A whole figure of values at a height.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> from uavlab.city import table1_city
+    >>> city = table1_city()
+    >>> figure, axes = plot.new_figure(6.4, 5.4)
+    >>> image = plot.draw_map(axes, city, city.occupied.sum(axis=2), plot.SEQUENTIAL)
+    >>> axes.get_xlabel(), axes.get_aspect(), image.get_array().shape
+    ('x, east [m]', 1.0, (100, 100))
+    """
     (west, south, _), (east, north, _) = city.bounds
     axes.set(xlabel="x, east [m]", ylabel="y, north [m]", aspect="equal")
     return axes.imshow(values.T, origin="lower", extent=(west, east, south, north), cmap=colors, **limits)
@@ -103,6 +189,28 @@ def plain(name: str) -> str:
 
 
 def finished(figure: Figure) -> Figure:
-    """The figure, closed for pyplot: a notebook shows it once, where the cell returns it."""
+    """The figure, closed for pyplot: a notebook shows it once, where the cell returns it.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        All is drawn on it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The same one; it can still be saved.
+
+    See Also
+    --------
+    new_figure : Begins a figure.
+
+    Examples
+    --------
+    >>> from uavlab import plot
+    >>> figure, axes = plot.new_figure(6.4, 4.0)
+    >>> plot.finished(figure) is figure
+    True
+    """
     plt.close(figure)
     return figure

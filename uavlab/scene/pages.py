@@ -29,12 +29,40 @@ from uavlab.scene.stage import draw_city, draw_risk, draw_zones, grid_spacing, s
 
 
 class Scene:
-    """A page with a scene in it; the last line of a notebook's cell shows it."""
+    """A page with a scene in it; the last line of a notebook's cell shows it.
+
+    Attributes
+    ----------
+    page : str
+        One self-contained HTML page, about 300 kB; `uavlab.scene.page` makes it.
+    height : int
+        Of the frame in the notebook [pixels]; 480 is usual.
+    still : bytes
+        A PNG picture, for places that can't run scripts.
+
+    See Also
+    --------
+    show : Makes one.
+    page : The page alone, to be written to a file.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.scene import show
+    >>> scene = show(table1_city(), height=600)
+    >>> scene
+    <Scene: page of ... kB, 600 pixels high>
+    >>> scene.still[1:4]
+    b'PNG'
+    """
 
     def __init__(self, page: str, height: int, still: bytes) -> None:
         self.page = page
         self.height = height
         self.still = still
+
+    def __repr__(self) -> str:
+        return f"<Scene: page of {len(self.page) / 1000:.0f} kB, {self.height} pixels high>"
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         frame = (
@@ -54,7 +82,39 @@ def show(
     flights: Sequence[Flight] | Mapping[str, Flight] = (),
     height: int = 480,
 ) -> Scene:
-    """The scene for a notebook; arguments as for `page`, and the frame's height in pixels."""
+    """The scene for a notebook: a page to turn and zoom, and beside it a still picture.
+
+    Parameters
+    ----------
+    city, routes, safe_distance, expansion, risk, slice_height, flights
+        As for `page`.
+    height : int
+        Of the frame [pixels], above 0; 300 to 700 is usual.
+
+    Returns
+    -------
+    Scene
+        Shown where it is the last line of a notebook's cell.
+
+    Raises
+    ------
+    ValueError
+        As for `page`.
+
+    See Also
+    --------
+    page : The page alone, to be written to a file.
+    uavlab.plot.still : The picture alone.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar
+    >>> from uavlab.scene import show
+    >>> city = table1_city()
+    >>> show(city, astar(city, (90, 18, 30), (50, 44, 30), min_clearance=3.0), safe_distance=3.0)
+    <Scene: page of ... kB, 480 pixels high>
+    """
     picture = io.BytesIO()
     still(city, *routes, risk=risk, flights=flights).savefig(picture, format="png", dpi=72)
     content = page(
@@ -92,7 +152,7 @@ def page(
         By name if it is a mapping. Drawn as tubes, each in a colour of its own; routes that didn't arrive are named in
         the legend.
     safe_distance : float, optional
-        Radius of a ball around each UAV [m]: the clearance it should keep.
+        Radius of a ball around each UAV [m], above 0: the clearance it should keep.
     expansion : bool
         Show in which order the first route's planner expanded its nodes (`record=True`), as an animation.
     risk : RiskMap, optional
@@ -113,8 +173,25 @@ def page(
     Raises
     ------
     ValueError
-        If `expansion` is asked for without a route that recorded its order or together with flights, `safe_distance`
-        is not above 0, `slice_height` lies outside of the map, or there is no `risk` to slice.
+        If `city` is no `City`, one of `routes` is neither a route nor a curve, `risk` is no `RiskMap`, or `flights`
+        holds anything else than flights; `expansion` is asked for without a route that recorded its order or together
+        with `flights`; `safe_distance` is not above 0; `slice_height` lies outside of the map, or there is no `risk`
+        to slice.
+
+    See Also
+    --------
+    show : The scene in a notebook.
+    uavlab.plot.still : A picture of it, for paper.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar
+    >>> from uavlab.scene import page
+    >>> city = table1_city()
+    >>> html = page(city, astar(city, (90, 18, 30), (50, 44, 30)), title="A* in Table 1")
+    >>> "<title>A* in Table 1</title>" in html, "A*: 66.4 m" in html, len(html) < 400_000
+    (True, True, True)
     """
     planned = drawn_routes(city, routes, risk)
     if slice_height is not None and risk is None:
