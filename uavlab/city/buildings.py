@@ -96,8 +96,8 @@ class Building:
 
     def __repr__(self) -> str:
         pieces = f"{len(self.pieces)} convex piece{'s' if len(self.pieces) > 1 else ''}"
-        (_, _, bottom), (_, _, top) = self.bounds
-        width, depth, _ = np.ptp(self.bounds, axis=0)
+        (west, south, bottom), (east, north, top) = np.round(self.bounds, 2)
+        width, depth = east - west, north - south
         return f"<Building {self.name}: {pieces}, {width:g} × {depth:g} m, z from {bottom:g} to {top:g} m>"
 
     @classmethod

@@ -614,10 +614,10 @@ class City:
 
         >>> from uavlab.city import table1_city
         >>> city = table1_city(cell=5.0)
-        >>> [round(float(city.blocked(clearance).mean()), 3) for clearance in (0.0, 5.0)]
-        [0.145, 0.356]
-        >>> round(float(city.blocked(5.0, min_height=20.0, max_height=60.0).mean()), 2)
-        0.79
+        >>> [int(city.blocked(clearance).sum()) for clearance in (0.0, 5.0)], city.occupied.size
+        ([1162, 2844], 8000)
+        >>> int(city.blocked(5.0, min_height=20.0, max_height=60.0).sum())
+        6352
         """
         checks.number("min_clearance", min_clearance)
         if not (np.isfinite(min_clearance) and min_clearance >= 0):
