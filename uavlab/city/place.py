@@ -251,7 +251,7 @@ def system_of(crs: Any, argument: str = "crs") -> System:
     Raises
     ------
     ValueError
-        If pyproj doesn't know it, or it is no system for places on a map.
+        If pyproj doesn't know `crs`, or it is no system for places on a map.
     """
     if isinstance(crs, System):
         return crs
@@ -370,7 +370,7 @@ def metres_per(unit: str, argument: str = "height_unit") -> float:
     Raises
     ------
     ValueError
-        If it is none of these.
+        If `unit` is none of these.
     """
     known = unit.strip().lower() if isinstance(unit, str) else unit
     return UNITS[checks.one_of(argument, known, UNITS)]

@@ -171,12 +171,11 @@ class RiskMap:
         --------
         The UAV flies over trees towards an open square. Its wreck may land there, which is over 40 times the risk.
 
-        >>> import numpy as np
         >>> from uavlab.city import City
         >>> from uavlab.risk import RiskMap
         >>> from uavlab.route import Route
-        >>> trees = np.repeat([[0.5], [0.0]], 5, axis=0) * np.ones(10)
-        >>> risk = RiskMap(City(np.zeros((10, 10, 8), dtype=bool), cell=5.0), 0.03, trees)
+        >>> city = City.from_buildings([], cell=5.0, origin=(0, 0, 0), size=(50, 50, 40))
+        >>> risk = RiskMap(city, 0.03, shelter=[[0.5] * 10] * 5 + [[0.0] * 10] * 5)
         >>> route = Route([(2.5, 7.5, 22.5), (25, 7.5, 22.5)])
         >>> [f"{risk.integral(route, drift=drift):.1e}" for drift in (False, True)]
         ['3.3e-07', '1.5e-05']
