@@ -59,7 +59,22 @@ class Building:
     Raises
     ------
     ValueError
-        If there is no piece, a corner is not finite, or a piece has no volume.
+        If `pieces` is empty, or one of them hasn't shape (M, 3), has a corner that is not finite, or has no volume.
+
+    See Also
+    --------
+    City.from_buildings : rasterises buildings.
+    table1_buildings : the five buildings of REPARE.
+
+    Examples
+    --------
+    >>> from uavlab.city import Building
+    >>> house = Building.roofed([(0, 0), (8, 0), (8, 6), (0, 6)], 5, [(0, 3, 8), (8, 3, 8)], name="house")
+    >>> house
+    <Building house: 1 convex piece, 8 × 6 m, z from 0 to 8 m>
+    >>> tower = Building.prism([(0, 6), (3, 6), (3, 9), (0, 9)], 20)
+    >>> Building(house.pieces + tower.pieces, name="church")
+    <Building church: 2 convex pieces, 8 × 9 m, z from 0 to 20 m>
     """
 
     pieces: tuple[np.ndarray, ...]
@@ -78,9 +93,47 @@ class Building:
         object.__setattr__(self, "pieces", pieces)
         self.hulls  # noqa: B018  a piece without volume is refused now, not when it is drawn
 
+    def __repr__(self) -> str:
+        pieces = f"{len(self.pieces)} convex piece{'s' if len(self.pieces) > 1 else ''}"
+        (west, south, bottom), (east, north, top) = np.round(self.bounds, 2)
+        width, depth = east - west, north - south
+        return f"<Building {self.name}: {pieces}, {width:g} × {depth:g} m, z from {bottom:g} to {top:g} m>"
+
     @classmethod
     def hull(cls, corners: npt.ArrayLike, *, name: str = "building", color: str = "lightsteelblue") -> Building:
-        """The convex hull of corners (M, 3) [m]: a frustum, a spire, any convex body, on the ground or above it."""
+        """The convex hull of corners: a frustum, a spire, any convex body, on the ground or above it.
+
+        Parameters
+        ----------
+        corners : (M, 3) array
+            [m]; at least four, not all in one plane.
+        name, color : str
+            As for `Building`.
+
+        Returns
+        -------
+        Building
+            Of one piece.
+
+        Raises
+        ------
+        ValueError
+            If `corners` hasn't shape (M, 3), is not finite, or spans no volume.
+
+        See Also
+        --------
+        Building.roofed : walls with a roof.
+        Building.prism : a footprint of any shape.
+
+        Examples
+        --------
+        >>> from uavlab.city import Building
+        >>> pyramid = Building.hull([(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0), (5, 5, 12)], name="pyramid")
+        >>> pyramid
+        <Building pyramid: 1 convex piece, 10 × 10 m, z from 0 to 12 m>
+        >>> pyramid.contains([[5, 5, 9], [1, 1, 9]]).tolist()
+        [True, False]
+        """
         return cls((np.asarray(corners, dtype=float),), name, color)
 
     @classmethod
@@ -98,10 +151,41 @@ class Building:
 
         One ridge point makes a spire, two a gable or hip roof, a smaller polygon a frustum.
 
+        Parameters
+        ----------
+        footprint : (M, 2) array
+            Convex outline [m], either way round, closed or not.
+        eaves, bottom : float
+            Heights of the walls' upper and lower end [m].
+        ridge : (R, 3) array, or one point (3,)
+            Corners of the roof [m]; only what lies above the eaves shows.
+        name, color : str
+            As for `Building`.
+
+        Returns
+        -------
+        Building
+            Of one piece, the hull of walls and ridge.
+
         Raises
         ------
         ValueError
-            If the footprint is no simple convex polygon, `eaves` is not above `bottom`, or `ridge` hasn't shape (R, 3).
+            If `footprint` is no simple convex polygon, `eaves` is not above `bottom`, or `ridge` hasn't shape (R, 3) or
+            is not finite.
+
+        See Also
+        --------
+        Building.prism : with a flat roof, over a footprint of any shape.
+        Building.hull : any convex body.
+
+        Examples
+        --------
+        A gable roof: in the middle it reaches 8 m, at the walls 5 m.
+
+        >>> from uavlab.city import Building
+        >>> house = Building.roofed([(0, 0), (8, 0), (8, 6), (0, 6)], 5, [(0, 3, 8), (8, 3, 8)])
+        >>> house.contains([[4, 3, 7.5], [4, 0.5, 7.5]]).tolist()
+        [True, False]
         """
         if not eaves > bottom:
             raise ValueError(f"eaves of {name!r} must be above its bottom ({bottom:g} m), got {eaves:g} m")
@@ -135,11 +219,32 @@ class Building:
             Heights of roof and floor [m]; a floor above 0 makes a floating building.
         holes : sequence of (H, 2) arrays
             Courtyards [m].
+        name, color : str
+            As for `Building`.
+
+        Returns
+        -------
+        Building
+            Of one piece over a convex footprint, else of one for each triangle that the footprint is cut into.
 
         Raises
         ------
         ValueError
-            If the outline crosses itself or has fewer than three corners, or `top` is not above `bottom`.
+            If `footprint` or one of `holes` has fewer than three different corners or one that is not finite, they
+            cross, or `top` is not above `bottom`.
+
+        See Also
+        --------
+        Building.roofed : with a pointed roof, over a convex footprint.
+        City.from_buildings : rasterises buildings.
+
+        Examples
+        --------
+        >>> from uavlab.city import Building
+        >>> block = [(0, 0), (30, 0), (30, 20), (0, 20)]
+        >>> courtyard = [(10, 5), (20, 5), (20, 15), (10, 15)]
+        >>> Building.prism(block, 12, holes=[courtyard]).contains([[5, 5, 6], [15, 10, 6]]).tolist()
+        [True, False]
         """
         if not top > bottom:
             raise ValueError(f"top of {name!r} must be above its bottom ({bottom:g} m), got {top:g} m")
@@ -168,7 +273,28 @@ class Building:
         return np.array([corners.min(axis=0), corners.max(axis=0)])
 
     def contains(self, points: npt.ArrayLike) -> np.ndarray:
-        """Whether each of the points (..., 3) [m] lies inside or on the surface, (...) bool."""
+        """Whether points lie inside or on the surface: behind all faces of a piece, n·p + d ≤ 0.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            [m]
+
+        Returns
+        -------
+        (...) bool array
+
+        See Also
+        --------
+        City.is_free : asks the voxels instead.
+
+        Examples
+        --------
+        >>> from uavlab.city import Building
+        >>> box = Building.prism([(0, 0), (4, 0), (4, 4), (0, 4)], 10)
+        >>> box.contains([[2, 2, 5], [2, 2, 10], [2, 2, 10.1]]).tolist()
+        [True, True, False]
+        """
         points = np.asarray(points, dtype=float)
         inside = np.zeros(points.shape[:-1], dtype=bool)
         for hull in self.hulls:

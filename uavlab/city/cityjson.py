@@ -92,16 +92,48 @@ def read_cityjson(
     voxels, no_fly
         As for `City.from_buildings`.
 
+    Returns
+    -------
+    City
+        `source` says what was taken, mended, derived, assumed and left out.
+
     Raises
     ------
     ValueError
-        If the file is broken, has nothing that could be an obstacle, its reference system is unknown or wrong, the
-        terrain doesn't cover the map, or this would have over 500 million voxels.
+        If the file at `path` is broken or has nothing that could be an obstacle; `crs` is unknown, or can't be that of
+        the coordinates; `height_unit` is no unit of length; `terrain` doesn't cover the map; or `cell`, `margin`,
+        `voxels` or `no_fly` is what `City.from_buildings` refuses, as for over 500 million voxels.
+    FileNotFoundError
+        If there is no file at `path`.
 
     Warns
     -----
     UserWarning
         If something was assumed or left out; `City.source` tells the rest.
+
+    See Also
+    --------
+    read_city : finds out the format.
+    read_geojson : footprints with heights.
+
+    References
+    ----------
+    H. Ledoux and others, "CityJSON: a compact and easy-to-use encoding of the CityGML data model", Open Geospatial
+    Data, Software and Standards, 2019.
+
+    Examples
+    --------
+    >>> import json, pathlib, tempfile
+    >>> from uavlab.city import read_cityjson
+    >>> corners = [[x, y, z] for z in (0, 6) for x, y in ((0, 0), (10, 0), (10, 20), (0, 20))]
+    >>> faces = [[[0, 3, 2, 1]], [[4, 5, 6, 7]], [[0, 1, 5, 4]], [[1, 2, 6, 5]], [[2, 3, 7, 6]], [[3, 0, 4, 7]]]
+    >>> hall = {"type": "Building", "geometry": [{"type": "Solid", "lod": "1", "boundaries": [faces]}]}
+    >>> model = {"type": "CityJSON", "version": "2.0", "CityObjects": {"hall": hall}, "vertices": corners}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "model.city.json")
+    ...     _ = path.write_text(json.dumps(model))
+    ...     read_cityjson(path, crs="local").buildings
+    (<Building hall: 1 convex piece, 10 × 20 m, z from 0 to 6 m>,)
     """
     path = Path(path)
     notes = Notes()

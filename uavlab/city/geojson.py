@@ -121,13 +121,42 @@ def read_geojson(
     Raises
     ------
     ValueError
-        If the file is broken or has no polygon; a height is not known; the reference system is not known, or can't be
-        that of the coordinates; or the map would have over 500 million voxels.
+        If the file at `path` is broken or has no building with an area; a height is not known, and `default_height` is
+        not given; `height`, `default_height` or `storey_height` is a number that is not above 0; `base` is a number
+        that is not finite, or is negative where it counts from the ground; `heights_above` or `height_unit` is none of
+        its words; `crs` is not known, or can't be that of the coordinates; `terrain` doesn't cover the map; or `cell`,
+        `margin`, `voxels` or `no_fly` is what `City.from_buildings` refuses, as for over 500 million voxels.
+    FileNotFoundError
+        If there is no file at `path`.
 
     Warns
     -----
     UserWarning
         If anything was assumed or left out.
+
+    See Also
+    --------
+    read_city : finds out the format.
+    read_no_fly : no-fly zones from such a file.
+    uavlab.risk.osm_layers : roads and shelter from such a file.
+
+    References
+    ----------
+    H. Butler and others, "The GeoJSON format", RFC 7946, 2016.
+
+    Examples
+    --------
+    >>> import json, pathlib, tempfile
+    >>> from uavlab.city import read_geojson
+    >>> outline = [[13.377, 52.516], [13.378, 52.516], [13.378, 52.5164], [13.377, 52.5164], [13.377, 52.516]]
+    >>> house = {"type": "Feature", "properties": {"height": "26 m"},
+    ...          "geometry": {"type": "Polygon", "coordinates": [outline]}}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "town.geojson")
+    ...     _ = path.write_text(json.dumps(house))
+    ...     city = read_geojson(path, cell=2.0)
+    >>> city, city.reference
+    (<City town: 54 × 43 × 24 voxels of 2 m, 1 buildings>, Place(longitude=13.377, latitude=52.516, height=0.0))
     """
     checks.positive_number("storey_height", storey_height)
     if default_height is not None:

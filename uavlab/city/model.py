@@ -67,8 +67,27 @@ class City:
     Raises
     ------
     ValueError
-        If `occupied` is not a three-dimensional array with voxels in it, `cell` is not above 0, or `ground` doesn't
-        fit.
+        If `occupied` is not a three-dimensional array with voxels in it, or has masked ones; `cell` is not above 0 and
+        finite; `origin` is not three finite numbers; `ground` hasn't one finite height for each column; or `no_fly` has
+        something else than zones.
+
+    See Also
+    --------
+    City.from_buildings : rasterises buildings.
+    read_city : reads a city from a file.
+    table1_city : the city of REPARE.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.city import City
+    >>> occupied = np.zeros((5, 1, 3), dtype=bool)
+    >>> occupied[2, 0, :2] = True  # a tower of two voxels
+    >>> city = City(occupied, cell=10.0, name="tower")
+    >>> city
+    <City tower: 5 × 1 × 3 voxels of 10 m, 0 buildings>
+    >>> city.clearance[:, 0, 0]
+    array([15.,  5.,  0.,  5., 15.])
     """
 
     occupied: np.ndarray
@@ -128,6 +147,9 @@ class City:
     ) -> City:
         """Rasterise buildings and the ground that they stand on.
 
+        Voxel (i, j, k) is occupied when a building or the ground reaches into origin + cell·[i, i+1) × [j, j+1) ×
+        [k, k+1).
+
         Parameters
         ----------
         buildings : sequence of Building
@@ -148,11 +170,39 @@ class City:
             A voxel is occupied when a building reaches into it; or, as in the papers, only when its centre lies in
             one, which loses what is thinner than a voxel.
 
+        Returns
+        -------
+        City
+
         Raises
         ------
         ValueError
-            If there are neither buildings nor a size, `cell` is not above 0, the terrain doesn't cover the map, or the
-            map would have over 500 million voxels.
+            If `buildings` is empty and `origin` or `size` is missing; `cell` or `size` is not above 0; `margin` is
+            negative; `origin` is not three finite numbers; `terrain` doesn't cover the map, has a reference system, or
+            is a number that is not finite; `voxels` is none of the two; or the map would have over 500 million voxels.
+
+        See Also
+        --------
+        read_city : reads buildings from a file and does this.
+        Building.prism : a building to begin with.
+        Terrain.from_raster : ground that isn't level.
+
+        References
+        ----------
+        The touched voxels are found with the clipping of I. E. Sutherland and G. W. Hodgman, "Reentrant polygon
+        clipping", Communications of the ACM, 1974.
+
+        Examples
+        --------
+        A wall of 0.3 m is thinner than a voxel. By the rule of centres it disappears.
+
+        >>> from uavlab.city import Building, City
+        >>> wall = Building.prism([(0, 0), (20, 0), (20, 0.3), (0, 0.3)], 10)
+        >>> city = City.from_buildings([wall], margin=5)
+        >>> city, int(city.occupied.sum())
+        (<City city: 30 × 11 × 15 voxels of 1 m, 1 buildings>, 200)
+        >>> int(City.from_buildings([wall], margin=5, voxels="centres").occupied.sum())
+        0
         """
         cell = checked_cell(cell)
         checks.one_of("voxels", voxels, RULES)
@@ -181,6 +231,22 @@ class City:
         """Distance from each centre to the nearest obstacle surface, (nx, ny, nz) [m].
 
         0 in an obstacle, infinite where there is none at all. Exact: the obstacle is the whole voxel, not its centre.
+
+        See Also
+        --------
+        City.distance : from any points.
+
+        References
+        ----------
+        P. F. Felzenszwalb and D. P. Huttenlocher, "Distance transforms of sampled functions", Theory of
+        Computing, 2012.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.city import City
+        >>> City(np.array([[[False]], [[False]], [[True]]]), cell=2.0).clearance.ravel()
+        array([3., 1., 0.])
         """
         clearance = squared_clearance(self.occupied)
         np.sqrt(clearance, out=clearance)
@@ -203,7 +269,38 @@ class City:
         return locked(normal)
 
     def towards_wall(self, vector: npt.ArrayLike) -> np.ndarray:
-        """How much of a vector (3,) points towards the nearest wall, max(0, −v·n), (nx, ny, nz)."""
+        """How much of a vector points towards the nearest wall, max(0, −v·n), with n the `wall_normal`.
+
+        Parameters
+        ----------
+        vector : (3,) array
+            (east, north, up), in any unit, such as a wind [m/s].
+
+        Returns
+        -------
+        (nx, ny, nz) array
+            In the unit of the vector; 0 where it points away from the wall, or where there is none.
+
+        Raises
+        ------
+        ValueError
+            If `vector` is not three finite numbers.
+
+        See Also
+        --------
+        City.clearance_along : how far the wall is on the way of an offset.
+
+        Examples
+        --------
+        A wind of 6 m/s to the north pushes towards the frustum from the voxel south of it, not from the one farther
+        south, which is as near to another building.
+
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> push = city.towards_wall((0.0, 6.0, 0.0))
+        >>> [round(float(push[tuple(city.cell_of(point))]), 2) for point in [(82.5, 57.5, 32.5), (82.5, 52.5, 32.5)]]
+        [6.0, 0.0]
+        """
         direction = np.asarray(vector, dtype=float)
         if direction.shape != (3,) or not np.isfinite(direction).all():
             raise ValueError(f"vector must be three finite numbers (east, north, up), got {vector!r}")
@@ -213,6 +310,8 @@ class City:
 
     def clearance_along(self, offset: npt.ArrayLike, *, at_most: float = np.inf) -> np.ndarray:
         """Least distance to obstacles on the way from each voxel's centre to where an offset takes it.
+
+        min over 0 ≤ t ≤ 1 of D(c + t·offset), with the centre c and the distance D to the nearest obstacle.
 
         Parameters
         ----------
@@ -229,7 +328,22 @@ class City:
         Raises
         ------
         ValueError
-            If the offset isn't two or three finite numbers, or `at_most` is negative.
+            If `offset` isn't two or three finite numbers, or `at_most` is not one number of at least 0.
+
+        See Also
+        --------
+        City.segment_distance : the same for straight lines from anywhere.
+        City.towards_wall : which way the nearest wall is.
+
+        Examples
+        --------
+        The voxel is 2.5 m from the building south of it. The wind carries away from it, the other way against it.
+
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> here = tuple(city.cell_of((82.5, 47.5, 32.5)))
+        >>> [round(float(city.clearance_along((0.0, north))[here]), 2) for north in (5.0, -2.0, -4.0)]
+        [2.5, 0.5, 0.0]
         """
         way = np.array(checks.three("offset", offset))
         checks.number("at_most", at_most)
@@ -251,14 +365,35 @@ class City:
         return locked(lowest), locked(highest)
 
     def height_above_ground(self, points: npt.ArrayLike) -> np.ndarray:
-        """Height of points (..., 3) [m] above the ground below them, (...) [m]: bilinear between the columns' centres.
+        """Height of points above the ground below them, z − g(x, y): bilinear between the columns' centres.
 
         Beyond the border of the map the ground goes on as it is at it.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            [m]
+
+        Returns
+        -------
+        (...) array
+            [m]; negative below the ground. Without terrain, above the bottom of the map.
 
         Raises
         ------
         ValueError
             If `points` hasn't shape (..., 3) or is not finite.
+
+        See Also
+        --------
+        City.blocked : keeps routes between heights above ground.
+
+        Examples
+        --------
+        >>> from uavlab.city import City, table1_buildings
+        >>> city = City.from_buildings(table1_buildings(), cell=5.0, terrain=12.0)
+        >>> city.height_above_ground([(80, 50, 30), (80, 50, 8)])
+        array([18., -4.])
         """
         points = checked_points(points)
         if self.ground is None:
@@ -294,6 +429,8 @@ class City:
     def distance(self, points: npt.ArrayLike, exact_within: float | None = None) -> np.ndarray:
         """Distance from points to the nearest obstacle's surface, where `clearance` has it from centres only.
 
+        D(p) = min |p − q| over all points q of occupied voxels.
+
         Parameters
         ----------
         points : (..., 3) array
@@ -311,6 +448,21 @@ class City:
         ------
         ValueError
             If `points` hasn't shape (..., 3) or is not finite, or `exact_within` is negative.
+
+        See Also
+        --------
+        City.segment_distance : of straight lines, all along.
+        City.is_free : whether points lie in obstacles.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> city.distance([(80, 50, 30), (80, 70, 30)])
+        array([5., 0.])
+        >>> far = (5, 95, 90)
+        >>> round(float(city.distance(far)), 2), round(float(city.distance(far, exact_within=50)), 2)
+        (33.34, 35.0)
         """
         points = np.asarray(points, dtype=float)
         if points.shape[-1:] != (3,) or not np.isfinite(points).all():
@@ -332,6 +484,8 @@ class City:
     ) -> np.ndarray:
         """Least distance of straight lines, all along, to the nearest obstacle's surface.
 
+        min over 0 ≤ t ≤ 1 of D(start + t·(end − start)), with the distance D of a point as in `distance`.
+
         Parameters
         ----------
         start, end : (..., 3) arrays
@@ -347,7 +501,21 @@ class City:
         Raises
         ------
         ValueError
-            If `start` or `end` haven't shape (..., 3) or are not finite, or `at_most` is negative.
+            If `start` or `end` hasn't shape (..., 3) or is not finite, or `at_most` is negative.
+
+        See Also
+        --------
+        City.is_free_line : whether the line keeps a distance.
+        uavlab.route.Route.clearance : of a whole route.
+
+        Examples
+        --------
+        Between two buildings, and straight through one.
+
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> city.segment_distance([(60, 52, 30), (5, 5, 30)], [(95, 52, 30), (95, 95, 30)]).round(2)
+        array([7., 0.])
         """
         first, last = np.broadcast_arrays(checked_points(start), checked_points(end))
         checks.refuse(np.asarray(at_most), np.asarray(at_most) >= 0, "at_most must be a distance in metres, at least 0")
@@ -366,7 +534,7 @@ class City:
         Parameters
         ----------
         start, end : (..., 3) arrays
-            [m]
+            Their ends [m].
         min_clearance : float
             Least distance that the line has to keep to obstacles [m]; with 0 it must not touch one.
 
@@ -378,7 +546,21 @@ class City:
         Raises
         ------
         ValueError
-            If `start` or `end` haven't shape (..., 3) or are not finite, or `min_clearance` is negative.
+            If `start` or `end` hasn't shape (..., 3) or is not finite, or `min_clearance` is negative or not finite.
+
+        See Also
+        --------
+        City.segment_distance : how far from obstacles the line is.
+        City.is_free : the same for points.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> city.is_free_line((60, 52, 30), [(95, 52, 30), (95, 95, 30)]).tolist()
+        [True, False]
+        >>> bool(city.is_free_line((60, 52, 30), (95, 52, 30), min_clearance=8.0))
+        False
         """
         keep = checks.not_negative_number("min_clearance", min_clearance)
         distance = self.segment_distance(start, end, at_most=keep + TOUCH * self.cell)
@@ -405,6 +587,22 @@ class City:
         ------
         ValueError
             If `min_clearance` or `min_height` is negative or not finite, or `max_height` not above `min_height`.
+
+        See Also
+        --------
+        City.is_free : asks only for obstacles.
+        City.out_of_heights : the part of the heights alone.
+
+        Examples
+        --------
+        A seventh of REPARE's map is built. A clearance of 5 m closes more than a third of it.
+
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> [int(city.blocked(clearance).sum()) for clearance in (0.0, 5.0)], city.occupied.size
+        ([1162, 2844], 8000)
+        >>> int(city.blocked(5.0, min_height=20.0, max_height=60.0).sum())
+        6352
         """
         checks.number("min_clearance", min_clearance)
         if not (np.isfinite(min_clearance) and min_clearance >= 0):
@@ -420,7 +618,30 @@ class City:
         return locked(blocked)
 
     def out_of_heights(self, min_height: float, max_height: float) -> np.ndarray:
-        """Which voxels' centres are too low or too high above ground, (nx, ny, nz) bool, see `blocked`."""
+        """Which voxels' centres are too low or too high above ground, as `blocked` counts it.
+
+        Parameters
+        ----------
+        min_height, max_height : float
+            Least and greatest height above ground [m]; infinite for no upper limit.
+
+        Returns
+        -------
+        (nx, ny, nz) bool array
+
+        See Also
+        --------
+        City.blocked : with obstacles and no-fly zones.
+        City.height_above_ground : height of points.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> outside = city.out_of_heights(20.0, 60.0)
+        >>> city.coordinates(2)[~outside[0, 0]]
+        array([22.5, 27.5, 32.5, 37.5, 42.5, 47.5, 52.5, 57.5])
+        """
         lowest, highest = self.range_of_ground
         levels = self.coordinates(2)
         too_low = levels < (highest + (min_height - 1e-9))[..., None]
@@ -435,7 +656,29 @@ class City:
         return locked(inside)
 
     def zone_building(self, zone: NoFlyZone) -> Building:
-        """A no-fly zone as a body on this map: cut off at the map's top and bottom [m]."""
+        """A no-fly zone as a body on this map: cut off at the map's top and bottom.
+
+        Parameters
+        ----------
+        zone : NoFlyZone
+
+        Returns
+        -------
+        Building
+            From `lower` above the lowest ground below the zone to `upper` above the highest [m].
+
+        See Also
+        --------
+        NoFlyZone.pieces : its pieces between any two heights.
+        City.zone_at : which zone is at a point.
+
+        Examples
+        --------
+        >>> from uavlab.city import NoFlyZone, table1_city
+        >>> airway = NoFlyZone([(0, 0), (20, 0), (20, 100), (0, 100)], lower=30.0, name="airway")
+        >>> table1_city(cell=5.0).zone_building(airway)  # the map ends at 100 m
+        <Building airway: 1 convex piece, 20 × 100 m, z from 30 to 100 m>
+        """
         (low, high), column = self.bounds[:, 2], np.zeros(self.shape[:2], dtype=bool)
         for piece in zone.pieces(low, high):
             column |= touches(Building((piece,)), self.shape, self.cell, self.origin)
@@ -448,12 +691,35 @@ class City:
         return Building(tuple(zone.pieces(low, max(high, low + 1e-3))), zone.name)
 
     def cell_of(self, points: npt.ArrayLike) -> np.ndarray:
-        """Indices (..., 3) of the voxels in which points (..., 3) [m] lie; out of range outside of the map or for NaN.
+        """Indices of the voxels in which points lie, ⌊(p − origin) / cell⌋.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            [m]
+
+        Returns
+        -------
+        (..., 3) int array
+            Out of range outside of the map; −1 for NaN.
 
         Raises
         ------
         ValueError
             If `points` hasn't shape (..., 3).
+
+        See Also
+        --------
+        City.center_of : from indices to centres.
+        City.inside : whether the indices are on the map.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> city.cell_of([(80, 50, 30), (-1, 50, 30)])
+        array([[16, 10,  6],
+               [-1, 10,  6]])
         """
         points = np.asarray(points, dtype=float)
         if points.shape[-1:] != (3,):
@@ -462,27 +728,92 @@ class City:
         return np.where(np.abs(index) < 2.0**62, index, -1).astype(np.int64)
 
     def coordinates(self, axis: int) -> np.ndarray:
-        """Coordinates of the centres along an axis, 0 east, 1 north, 2 up, (n,) [m]."""
+        """Coordinates of the centres along an axis, origin + cell·(i + ½).
+
+        Parameters
+        ----------
+        axis : int
+            0 east, 1 north, 2 up.
+
+        Returns
+        -------
+        (n,) array
+            [m]
+
+        Raises
+        ------
+        IndexError
+            If there is no such `axis`.
+
+        See Also
+        --------
+        City.center_of : centres of single voxels.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> table1_city(cell=25.0).coordinates(0)
+        array([12.5, 37.5, 62.5, 87.5])
+        """
         return self.origin[axis] + self.cell * (np.arange(self.shape[axis]) + 0.5)
 
     def center_of(self, index: npt.ArrayLike) -> np.ndarray:
-        """Centres (..., 3) [m] of the voxels with indices (..., 3)."""
-        return self.origin + self.cell * (np.asarray(index) + 0.5)
-
-    def code_of(self, index: npt.ArrayLike, *, as_printed: bool = False) -> np.ndarray:
-        """Node codes of voxels (..., 3): k + nz·(j + ny·i), the position in `occupied.ravel()`.
+        """Centres of voxels, origin + cell·(index + ½): the nodes that planners visit.
 
         Parameters
         ----------
         index : (..., 3) array of int
+            May lie outside of the map.
+
+        Returns
+        -------
+        (..., 3) array
+            [m]
+
+        See Also
+        --------
+        City.cell_of : the inverse.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> table1_city(cell=5.0).center_of((16, 10, 6))
+        array([82.5, 52.5, 32.5])
+        """
+        return self.origin + self.cell * (np.asarray(index) + 0.5)
+
+    def code_of(self, index: npt.ArrayLike, *, as_printed: bool = False) -> np.ndarray:
+        """Node codes of voxels: k + nz·(j + ny·i), the position in `occupied.ravel()`.
+
+        Parameters
+        ----------
+        index : (..., 3) array of int
+            Voxels (i, j, k) of the map.
         as_printed : bool
             Number them as RISK-ACO does (section 1): from left to right, from the back to the front, from the top down.
             We take left to be west, the back north, and begin with 1: 1 + i + nx·((ny − 1 − j) + ny·(nz − 1 − k)).
 
+        Returns
+        -------
+        (...) int array
+
         Raises
         ------
         ValueError
-            If an index is outside of the map or hasn't shape (..., 3).
+            If `index` hasn't shape (..., 3) or lies outside of the map, or `as_printed` isn't True or False.
+
+        See Also
+        --------
+        City.index_of : the inverse.
+
+        Examples
+        --------
+        The lowest corner in the south-west comes first; as printed, it is one of the last.
+
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> int(city.code_of((0, 0, 0))), int(city.code_of((0, 0, 0), as_printed=True))
+        (0, 7981)
         """
         index = np.asarray(index)
         if index.shape[-1:] != (3,):
@@ -496,12 +827,34 @@ class City:
         return np.ravel_multi_index(tuple(np.moveaxis(index, -1, 0)), self.shape)
 
     def index_of(self, code: npt.ArrayLike, *, as_printed: bool = False) -> np.ndarray:
-        """Indices (..., 3) of the voxels with these node codes; the inverse of `code_of`.
+        """Indices of the voxels with these node codes; the inverse of `code_of`.
+
+        Parameters
+        ----------
+        code : int, or array of them
+            From 0 to one less than the number of voxels; as printed, from 1 to their number.
+        as_printed : bool
+            As for `code_of`.
+
+        Returns
+        -------
+        (..., 3) int array
 
         Raises
         ------
         ValueError
-            If a code is not between 0 and the number of voxels.
+            If `code` is out of its range, or `as_printed` isn't True or False.
+
+        See Also
+        --------
+        City.code_of : the inverse.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> city.index_of(6606), int(city.code_of(city.index_of(6606)))
+        (array([16, 10,  6]), 6606)
         """
         first = 1 if checks.flag("as_printed", as_printed) else 0
         code = np.asarray(code)
@@ -517,19 +870,101 @@ class City:
         return np.stack(np.unravel_index(code, self.shape), axis=-1)
 
     def inside(self, points: npt.ArrayLike) -> np.ndarray:
-        """Whether points (..., 3) [m] lie in the map's box, (...) bool."""
+        """Whether points lie in the map's box, origin ≤ p < origin + cell·shape.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            [m]
+
+        Returns
+        -------
+        (...) bool array
+            False for NaN.
+
+        Raises
+        ------
+        ValueError
+            If `points` hasn't shape (..., 3).
+
+        See Also
+        --------
+        City.is_free : and in no obstacle.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> table1_city(cell=5.0).inside([(0, 0, 0), (50, 50, 100)]).tolist()  # the upper end belongs to the next voxel
+        [True, False]
+        """
         index = self.cell_of(points)
         return np.all((index >= 0) & (index < self.shape), axis=-1)
 
     def is_free(self, points: npt.ArrayLike) -> np.ndarray:
-        """Whether points (..., 3) [m] lie in free voxels, (...) bool; outside of the map is not free."""
+        """Whether points lie in free voxels; outside of the map is not free, a no-fly zone is.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            [m]
+
+        Returns
+        -------
+        (...) bool array
+
+        Raises
+        ------
+        ValueError
+            If `points` hasn't shape (..., 3).
+
+        See Also
+        --------
+        City.is_free_line : the same for straight lines.
+        City.distance : how far from obstacles they lie.
+        City.blocked : voxels that are closed for planners.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> city = table1_city(cell=5.0)
+        >>> city.is_free([(80, 50, 30), (80, 70, 30), (80, 120, 30)]).tolist()  # free, in a building, off the map
+        [True, False, False]
+        """
         points = np.asarray(points, dtype=float)
         inside = self.inside(points)
         index = np.where(inside[..., None], self.cell_of(points), 0)
         return inside & ~self.occupied[tuple(np.moveaxis(index, -1, 0))]
 
     def building_at(self, point: npt.ArrayLike) -> str:
-        """Name of what is in the voxel of a point [m]: a building, the ground, or "an obstacle"."""
+        """Name of what occupies the voxel of a point, for messages.
+
+        Parameters
+        ----------
+        point : (3,) array
+            In an occupied voxel [m]; whether it is occupied is not looked at.
+
+        Returns
+        -------
+        str
+            A building that reaches into the voxel; where there is none, the ground of a city that has some, else
+            "an obstacle".
+
+        Raises
+        ------
+        ValueError
+            If `point` hasn't shape (3,).
+
+        See Also
+        --------
+        City.is_free : whether the voxel is occupied at all.
+        City.zone_at : the no-fly zone at a point.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> table1_city(cell=5.0).building_at((80, 70, 30))
+        "building '3 frustum'"
+        """
         voxel = self.center_of(self.cell_of(point)) - self.cell / 2
         for building in self.buildings:
             here = np.zeros((1, 1, 1), dtype=bool)
@@ -539,7 +974,37 @@ class City:
         return "the ground" if self.ground is not None else "an obstacle"
 
     def zone_at(self, point: npt.ArrayLike) -> str:
-        """Name of a no-fly zone that reaches into the voxel of a point [m]; empty if there is none."""
+        """Name of a no-fly zone that reaches into the voxel of a point.
+
+        Parameters
+        ----------
+        point : (3,) array
+            [m]
+
+        Returns
+        -------
+        str
+            Of the first such zone; empty if there is none.
+
+        Raises
+        ------
+        ValueError
+            If `point` hasn't shape (3,).
+
+        See Also
+        --------
+        City.building_at : what occupies the voxel.
+        NoFlyZone : what a zone is.
+
+        Examples
+        --------
+        >>> import dataclasses
+        >>> from uavlab.city import NoFlyZone, table1_city
+        >>> park = NoFlyZone([(0, 0), (10, 0), (10, 10), (0, 10)], upper=40.0, name="park")
+        >>> city = dataclasses.replace(table1_city(cell=5.0), no_fly=[park])
+        >>> city.zone_at((5, 5, 30)), city.zone_at((5, 5, 50))
+        ('park', '')
+        """
         voxel = self.center_of(self.cell_of(point)) - self.cell / 2
         for zone in self.no_fly:
             here = np.zeros((1, 1, 1), dtype=bool)
@@ -549,33 +1014,100 @@ class City:
         return ""
 
     def to_geographic(self, points: npt.ArrayLike) -> np.ndarray:
-        """Longitude and latitude [degrees, WGS84] and height of points (..., 3) [m] of this map, (..., 3).
+        """Longitude, latitude and height of points of this map.
 
-        The height [m] is in the vertical system of the file that the city was read from.
+        The height is in the vertical system of the file that the city was read from: z plus that of the `reference`.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            [m]
+
+        Returns
+        -------
+        (..., 3) array
+            Longitude and latitude [degrees, WGS84], and height [m].
 
         Raises
         ------
         ValueError
             If the city has no `reference`, or `points` hasn't shape (..., 3) or is not finite.
+
+        See Also
+        --------
+        City.from_geographic : the inverse.
+        Place.longitude_latitude : without heights.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.city import City
+        >>> city = City(np.zeros((20, 20, 10), dtype=bool), 5.0, reference=(13.3777, 52.5163, 34.0))
+        >>> city.to_geographic((100, 0, 30)).round(4)
+        array([13.3792, 52.5163, 64.    ])
         """
         points, place = checked_points(points), self.checked_reference()
         lonlat = place.longitude_latitude(points[..., :2])
         return np.concatenate([lonlat, points[..., 2:] + place.height], axis=-1)
 
     def from_geographic(self, points: npt.ArrayLike) -> np.ndarray:
-        """Points (..., 3) [m] of this map from longitudes, latitudes and heights (..., 3), see `to_geographic`.
+        """Points of this map from longitudes, latitudes and heights: the inverse of `to_geographic`.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Longitude and latitude [degrees, WGS84], and height [m] in the city's vertical system.
+
+        Returns
+        -------
+        (..., 3) array
+            [m]
 
         Raises
         ------
         ValueError
-            If the city has no `reference`, or `points` hasn't shape (..., 3), is not finite, or out of range.
+            If the city has no `reference`, or `points` hasn't shape (..., 3), is not finite, or has a latitude that is
+            not from −90 to 90.
+
+        See Also
+        --------
+        City.to_geographic : the inverse.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.city import City
+        >>> city = City(np.zeros((20, 20, 10), dtype=bool), 5.0, reference=(13.3777, 52.5163, 34.0))
+        >>> city.from_geographic((13.3787, 52.5168, 64.0)).round(1)
+        array([67.9, 55.6, 30. ])
         """
         points, place = checked_points(points), self.checked_reference()
         checks.within("points: latitudes", points[..., 1], -90.0, 90.0, "degrees (order: longitude, latitude, height)")
         return np.concatenate([place.east_north(points[..., :2]), points[..., 2:] - place.height], axis=-1)
 
     def checked_reference(self) -> Place:
-        """The reference; `ValueError` with the cure where there is none."""
+        """The reference; `ValueError` with the cure where there is none.
+
+        Returns
+        -------
+        Place
+
+        Raises
+        ------
+        ValueError
+            If `reference` is None.
+
+        See Also
+        --------
+        City.to_geographic : what needs it.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.city import City
+        >>> City(np.zeros((4, 4, 4), dtype=bool), reference=(13.3777, 52.5163)).checked_reference()
+        Place(longitude=13.3777, latitude=52.5163, height=0.0)
+        """
         if self.reference is None:
             raise ValueError(
                 f"{self.name!r} doesn't know where on Earth it lies: read it with crs=..., or give City its "
@@ -607,7 +1139,20 @@ class City:
         Raises
         ------
         ValueError
-            If no such pairs are found in this city, `count` is below 1, or `min_clearance` is negative.
+            If `count` is below 1, `rng` is neither generator nor seed, `min_clearance` is negative or not finite, or no
+            such pairs are found, `apart` and `min_clearance` being too much for this city.
+
+        See Also
+        --------
+        City.blocked : where starts and goals may not be.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.city import table1_city
+        >>> pairs = table1_city(cell=5.0).random_pairs(100, rng=7, apart=60.0)
+        >>> pairs.shape, bool((np.linalg.norm(pairs[:, 1] - pairs[:, 0], axis=1) >= 60.0).all())
+        ((100, 2, 3), True)
         """
         if count < 1:
             raise ValueError(f"count must be at least 1, got {count!r}")
@@ -644,6 +1189,21 @@ class City:
         ------
         ValueError
             If `points` hasn't shape (N, 3) or is not finite.
+
+        See Also
+        --------
+        uavlab.route.Route.integral : sums values over them.
+
+        References
+        ----------
+        J. Amanatides and A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics, 1987.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> index, length = table1_city(cell=5.0).voxels_along([(2.5, 2.5, 2.5), (12.5, 7.5, 2.5)])
+        >>> index.tolist(), length.round(2)
+        ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 1, 0]], array([2.8, 2.8, 2.8, 2.8]))
         """
         points = np.asarray(points, dtype=float)
         if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():

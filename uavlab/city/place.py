@@ -42,7 +42,19 @@ UNITS = {
 
 
 class Place(NamedTuple):
-    """The place of x = y = z = 0 of a city."""
+    """The place of x = y = z = 0 of a city.
+
+    See Also
+    --------
+    City.to_geographic : from points of a map to longitude, latitude and height.
+    City.from_geographic : the inverse.
+
+    Examples
+    --------
+    >>> from uavlab.city import Place
+    >>> Place(13.3777, 52.5163)
+    Place(longitude=13.3777, latitude=52.5163, height=0.0)
+    """
 
     longitude: float
     """[degrees, WGS84]"""
@@ -52,7 +64,35 @@ class Place(NamedTuple):
     """[m], in the vertical system of the file that it was read from."""
 
     def east_north(self, lonlat: npt.ArrayLike) -> np.ndarray:
-        """East and north (..., 2) [m] of longitudes and latitudes (..., 2) [degrees], at the height of the place."""
+        """East and north of longitudes and latitudes, in the plane that touches the Earth here.
+
+        (e, n) are the first two coordinates of R (X − X₀): X and X₀ are the point and the place from the Earth's
+        centre, both at the height of the place, and R turns the axes to east, north and up.
+
+        Parameters
+        ----------
+        lonlat : (..., 2) array
+            Longitudes and latitudes [degrees, WGS84].
+
+        Returns
+        -------
+        (..., 2) array
+            East and north [m].
+
+        See Also
+        --------
+        Place.longitude_latitude : the inverse.
+        City.from_geographic : with heights, for a city.
+
+        Examples
+        --------
+        A hundredth of a degree is shorter to the east than to the north, about by the cosine of the latitude.
+
+        >>> from uavlab.city import Place
+        >>> gate = Place(13.3777, 52.5163)
+        >>> gate.east_north((13.3877, 52.5263)).round(1)
+        array([ 678.7, 1112.8])
+        """
         lonlat = np.asarray(lonlat, dtype=float)
         east, north, _ = topocentric(self).transform(
             lonlat[..., 0], lonlat[..., 1], np.full(lonlat.shape[:-1], self.height)
@@ -60,10 +100,32 @@ class Place(NamedTuple):
         return np.stack([east, north], axis=-1)
 
     def longitude_latitude(self, points: npt.ArrayLike) -> np.ndarray:
-        """Longitudes and latitudes (..., 2) [degrees] of points (..., 2) [m] east and north: the inverse.
+        """Longitudes and latitudes of points east and north: the inverse of `east_north`.
 
         The Earth falls away below the plane, so the point that is looked for, at the height of the place, lies below
         it: found by going down as far as it is too high, which converges at once. Longitudes go on past ±180.
+
+        Parameters
+        ----------
+        points : (..., 2) array
+            East and north [m].
+
+        Returns
+        -------
+        (..., 2) array
+            Longitudes and latitudes [degrees, WGS84].
+
+        See Also
+        --------
+        Place.east_north : the inverse.
+        City.to_geographic : with heights, for a city.
+
+        Examples
+        --------
+        >>> from uavlab.city import Place
+        >>> gate = Place(13.3777, 52.5163)
+        >>> gate.longitude_latitude((678.7, 1112.8)).round(4)
+        array([13.3877, 52.5263])
         """
         points = np.asarray(points, dtype=float)
         down = np.zeros(points.shape[:-1])
@@ -189,7 +251,7 @@ def system_of(crs: Any, argument: str = "crs") -> System:
     Raises
     ------
     ValueError
-        If pyproj doesn't know it, or it is no system for places on a map.
+        If pyproj doesn't know `crs`, or it is no system for places on a map.
     """
     if isinstance(crs, System):
         return crs
@@ -308,7 +370,7 @@ def metres_per(unit: str, argument: str = "height_unit") -> float:
     Raises
     ------
     ValueError
-        If it is none of these.
+        If `unit` is none of these.
     """
     known = unit.strip().lower() if isinstance(unit, str) else unit
     return UNITS[checks.one_of(argument, known, UNITS)]

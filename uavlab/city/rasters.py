@@ -19,17 +19,41 @@ def read_terrain(path: str | Path, *, crs: Any = None) -> Terrain:
     Parameters
     ----------
     path : str or Path
+        Which of the two it is, is found by looking.
     crs : anything that `uavlab.city.place.system_of` takes, optional
         Its reference system; a GeoTIFF names its own, an .asc in a .prj file of its name. "local", or an .asc without
         any: metres of the city.
 
+    Returns
+    -------
+    Terrain
+        In the reference system, if there is one.
+
     Raises
     ------
     ValueError
-        If the file is broken or has over 25 million pixels, the system isn't known or can't be its own, or a height is
-        no height on Earth and not declared as no data.
+        If the file at `path` is broken, has over 25 million pixels, or a height that is none on Earth and not declared
+        as no data; or `crs` isn't known, can't be its own, or is missing for a GeoTIFF that names none.
     ImportError
         If a GeoTIFF is to be read without rasterio.
+    FileNotFoundError
+        If there is no file at `path`.
+
+    See Also
+    --------
+    Terrain.from_raster : from an array.
+    read_geojson : puts buildings on it, with `terrain=path`.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from uavlab.city import read_terrain
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "hill.asc")
+    ...     _ = path.write_text("ncols 2\\nnrows 2\\nxllcorner 0\\nyllcorner 0\\ncellsize 10\\n2 4\\n0 -9999")
+    ...     hill = read_terrain(path)
+    >>> hill.heights_at([(5, 5), (15, 5)]), hill.filled().heights_at([(5, 5), (15, 5)])
+    (array([ 0., nan]), array([0., 4.]))
     """
     path = Path(path)
     with path.open("rb") as file:

@@ -33,12 +33,38 @@ def read_city(path: str | Path, **options: Any) -> City:
     **options
         Passed on to `read_geojson`, `read_cityjson` or `read_voxels`, for example `cell=2.0`.
 
+    Returns
+    -------
+    City
+
     Raises
     ------
     ValueError
-        If the format is none of these, or the file is broken.
+        If the file at `path` is of none of these formats or broken, or one of `options` is none of its reader or out of
+        its range.
     FileNotFoundError
-        If there is no such file.
+        If there is no file at `path`.
+
+    Warns
+    -----
+    UserWarning
+        If the reader assumed or left out anything.
+
+    See Also
+    --------
+    read_geojson : footprints with heights.
+    read_cityjson : models with roofs.
+    read_voxels : voxel maps.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from uavlab.city import read_city
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "maze.3dmap")
+    ...     _ = path.write_text("voxel 4 3 2")
+    ...     read_city(path, cell=2.0)
+    <City maze: 4 × 3 × 2 voxels of 2 m, 0 buildings>
     """
     path = Path(path)
     with path.open("rb") as file:

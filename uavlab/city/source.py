@@ -55,8 +55,26 @@ class Source:
     name : str
         Of the file.
     format : str
+        Such as "GeoJSON".
     entries : tuple of Entry
         In the order of `KINDS`.
+
+    See Also
+    --------
+    read_city : gives the city that it reads one, as `city.source`.
+
+    Examples
+    --------
+    Readers make it. Here a town was read in which one house has no height.
+
+    >>> from uavlab.city import Source
+    >>> from uavlab.city.source import Entry
+    >>> source = Source("town.geojson", "GeoJSON", (
+    ...     Entry("taken", "building", 2, ()), Entry("assumed", "height of 9 m", 1, ("annexe",))))
+    >>> source
+    town.geojson (GeoJSON)
+      taken: 2 × building
+      assumed: 1 × height of 9 m (annexe)
     """
 
     name: str
@@ -64,12 +82,67 @@ class Source:
     entries: tuple[Entry, ...] = ()
 
     def of(self, kind: str) -> tuple[Entry, ...]:
-        """The entries of one kind, see `KINDS`."""
+        """The entries of one kind.
+
+        Parameters
+        ----------
+        kind : {"taken", "mended", "derived", "assumed", "left out"}
+
+        Returns
+        -------
+        tuple of Entry
+
+        Raises
+        ------
+        ValueError
+            If `kind` is none of these.
+
+        See Also
+        --------
+        Source.count : how many things they concern.
+
+        Examples
+        --------
+        >>> from uavlab.city import Source
+        >>> from uavlab.city.source import Entry
+        >>> source = Source("town.geojson", "GeoJSON", (Entry("left out", "mast", 4, ("mast 1",)),))
+        >>> [entry.what for entry in source.of("left out")], source.of("assumed")
+        (['mast'], ())
+        """
         checks.one_of("kind", kind, KINDS)
         return tuple(entry for entry in self.entries if entry.kind == kind)
 
     def count(self, kind: str, what: str = "") -> int:
-        """How many things entries of a kind concern; with `what`, those that have this in their words."""
+        """How many things entries of a kind concern; with `what`, those that have this in their words.
+
+        Parameters
+        ----------
+        kind : {"taken", "mended", "derived", "assumed", "left out"}
+        what : str
+            Part of the words to look for; by default all count.
+
+        Returns
+        -------
+        int
+
+        Raises
+        ------
+        ValueError
+            If `kind` is none of these.
+
+        See Also
+        --------
+        Source.of : the entries themselves.
+
+        Examples
+        --------
+        >>> from uavlab.city import Source
+        >>> from uavlab.city.source import Entry
+        >>> source = Source("town.geojson", "GeoJSON", (
+        ...     Entry("left out", "mast", 4, ()), Entry("left out", "polygon without area", 1, ())))
+        >>> source.count("left out"), source.count("left out", "polygon")
+        (5, 1)
+        """
         return sum(entry.count for entry in self.of(kind) if what in entry.what)
 
     @property
@@ -90,7 +163,32 @@ class Source:
         return f"<table><caption>{html.escape(self.name)} ({self.format})</caption>{rows}</table>"
 
     def warn(self, advice: str = "city.source tells all") -> None:
-        """One warning with all that was assumed or left out, at the caller's line; none where nothing was."""
+        """One warning with all that was assumed or left out, at the caller's line; none where nothing was.
+
+        Parameters
+        ----------
+        advice : str
+            What the warning ends with.
+
+        Warns
+        -----
+        UserWarning
+            If anything was assumed or left out.
+
+        See Also
+        --------
+        Source.of : the entries, also those that the warning leaves out.
+
+        Examples
+        --------
+        >>> import warnings
+        >>> from uavlab.city import Source
+        >>> from uavlab.city.source import Entry
+        >>> with warnings.catch_warnings(record=True) as said:
+        ...     Source("town.geojson", "GeoJSON", (Entry("left out", "mast", 4, ()),)).warn()
+        >>> print(said[0].message)
+        town.geojson: left out: 4 × mast. city.source tells all
+        """
         if self.doubts:
             said = "; ".join(map(str, self.doubts))
             # one reader calls another: as many frames are left out as belong to the library

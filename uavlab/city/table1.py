@@ -11,6 +11,22 @@ def table1_buildings() -> tuple[Building, ...]:
 
     Building 1 is an L with a ridge along both wings. Its two wings are convex: each is the hull of its walls to
     65 m and of its half of the ridge at 70 m.
+
+    Returns
+    -------
+    tuple of Building
+
+    See Also
+    --------
+    table1_city : their map.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_buildings
+    >>> [building.name for building in table1_buildings()]
+    ['1 notch', '2 hip roof', '3 frustum', '4 floating', '5 spire']
+    >>> table1_buildings()[3]
+    <Building 4 floating: 1 convex piece, 45 × 30 m, z from 45 to 60 m>
     """
     wings = (
         Building.roofed([(60, 15), (70, 15), (70, 45), (60, 45)], 65, [(65, 15, 70), (65, 40, 70)]),
@@ -56,6 +72,25 @@ def table1_city(cell: float = 1.0) -> City:
     -------
     City
         100 × 100 × 100 m with five buildings, one of them floating, one an L-shaped notch.
+
+    Raises
+    ------
+    ValueError
+        If `cell` is not above 0, or so small that the map would have over 500 million voxels.
+
+    See Also
+    --------
+    table1_buildings : its buildings alone.
+    City.from_buildings : a map of other buildings.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> city = table1_city()
+    >>> city
+    <City Table 1: 100 × 100 × 100 voxels of 1 m, 5 buildings>
+    >>> int(city.occupied.sum())
+    144858
     """
     return City.from_buildings(
         table1_buildings(), cell=cell, origin=(0, 0, 0), size=(100, 100, 100), name="Table 1", voxels="centres"

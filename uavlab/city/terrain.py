@@ -55,7 +55,25 @@ class Terrain:
     Raises
     ------
     ValueError
-        If a shape is wrong, a point is not finite, no height on Earth, or not where the system is used.
+        If `points` hasn't shape (N, 3), is not finite, has a height that is none on Earth, or lies outside of where
+        `system` is used; `triangles` hasn't shape (T, 3) or names points that there aren't; or `beyond` is none of the
+        two.
+
+    See Also
+    --------
+    read_terrain : reads a raster of heights.
+    City.from_buildings : puts buildings on the ground.
+
+    Examples
+    --------
+    A slope of one metre in ten, as two triangles.
+
+    >>> from uavlab.city import Terrain
+    >>> slope = Terrain([(0, 0, 0), (100, 0, 10), (100, 100, 10), (0, 100, 0)], [(0, 1, 2), (0, 2, 3)])
+    >>> slope
+    <Terrain: 4 points, 2 triangles, heights from 0 to 10 m>
+    >>> slope.heights_at([(25, 50), (120, 50)])
+    array([2.5, nan])
     """
 
     points: np.ndarray
@@ -83,6 +101,12 @@ class Terrain:
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "triangles", triangles)
 
+    def __repr__(self) -> str:
+        factor, place = (1.0, "") if self.system is None else (self.system.height_factor, f", in {self.system.name}")
+        low, high = factor * self.points[:, 2].min(), factor * self.points[:, 2].max()
+        counts = f"{len(self.points):,} points, {len(self.triangles):,} triangles"
+        return f"<Terrain: {counts}, heights from {low:.4g} to {high:.4g} m{place}>"
+
     @classmethod
     def from_raster(
         cls, heights: npt.ArrayLike, bounds: Sequence[float], *, crs: Any = None, beyond: str = "refuse"
@@ -104,8 +128,23 @@ class Terrain:
         Raises
         ------
         ValueError
-            If there are no heights or over 25 million, bounds are not in order or in degrees without a system, pyproj
-            doesn't know the system, or a height is none.
+            If `heights` isn't two-dimensional, has no data at all, over 25 million pixels, or a height that is infinite
+            or none on Earth; `bounds` are not in order, or in degrees without `crs`; `crs` is no system that pyproj
+            knows or not that of `bounds`; or `beyond` is none of the two.
+
+        See Also
+        --------
+        read_terrain : the same from a file.
+        Terrain.from_points : the ground through scattered points.
+
+        Examples
+        --------
+        >>> from uavlab.city import Terrain
+        >>> hill = Terrain.from_raster([[2, 4], [0, 2]], (0, 0, 20, 20))  # the first row lies in the north
+        >>> hill
+        <Terrain: 16 points, 18 triangles, heights from 0 to 4 m>
+        >>> hill.heights_at([(5, 5), (15, 15), (10, 10)])
+        array([0., 4., 2.])
         """
         raster, edges = checked_raster("heights", heights, bounds)
         check_pixels("heights", *raster.shape)
@@ -123,7 +162,40 @@ class Terrain:
 
     @classmethod
     def from_grid(cls, grid: np.ndarray, system: System | None = None, beyond: str = "refuse") -> Terrain:
-        """The ground from points on a grid (rows, columns, 3), NaN where there is no data: two triangles per mesh."""
+        """The ground from points on a grid, which may be turned or uneven: two triangles per mesh.
+
+        Parameters
+        ----------
+        grid : (rows, columns, 3) float array
+            Points in metres of the city, or in the system and its units; NaN where there is no data.
+        system : System, optional
+            Their reference system.
+        beyond : {"refuse", "nearest"}
+            As for `Terrain`.
+
+        Returns
+        -------
+        Terrain
+            With holes in the meshes that have a corner without data.
+
+        Raises
+        ------
+        ValueError
+            If `grid` has no data at all, a height that is none on Earth, or lies outside of where `system` is used; or
+            `beyond` is none of the two.
+
+        See Also
+        --------
+        Terrain.from_raster : from heights and bounds alone.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.city import Terrain
+        >>> x, y = np.meshgrid([0.0, 10.0, 30.0], [0.0, 10.0])
+        >>> Terrain.from_grid(np.stack([x, y, x / 10], axis=-1))
+        <Terrain: 6 points, 4 triangles, heights from 0 to 3 m>
+        """
         rows, columns = grid.shape[:2]
         number = np.arange(rows * columns).reshape(rows, columns)
         north_west, north_east = number[:-1, :-1].ravel(), number[:-1, 1:].ravel()
@@ -141,7 +213,33 @@ class Terrain:
 
     @classmethod
     def from_points(cls, points: npt.ArrayLike) -> Terrain:
-        """The ground through points (N, 3) [m]: linear between them (Delaunay), beyond them as high as the nearest."""
+        """The ground through points: linear between them (Delaunay), beyond them as high as the nearest.
+
+        Parameters
+        ----------
+        points : (N, 3) array
+            [m], in any order; of two above each other the lower one counts.
+
+        Returns
+        -------
+        Terrain
+
+        Raises
+        ------
+        ValueError
+            If `points` hasn't shape (N, 3) with N of at least 1, is not finite, or has a height that is none on Earth.
+
+        See Also
+        --------
+        Terrain.from_raster : the ground from a raster of heights.
+
+        Examples
+        --------
+        >>> from uavlab.city import Terrain
+        >>> feet = Terrain.from_points([(0, 0, 1), (40, 0, 1), (0, 40, 5)])
+        >>> feet.heights_at([(0, 20), (-30, 50)])
+        array([3., 5.])
+        """
         known = checks.numbers("points", points)
         if known.ndim != 2 or known.shape[1] != 3 or len(known) == 0:
             raise ValueError(f"points must have shape (N, 3), at least one, got {known.shape}")
@@ -152,10 +250,34 @@ class Terrain:
     def placed(self, place: Place | None) -> Terrain:
         """The terrain in metres of a city at a place; as it is when it has no system.
 
+        Parameters
+        ----------
+        place : Place, or None
+            Of x = y = z = 0 of the city, such as `city.reference`.
+
+        Returns
+        -------
+        Terrain
+            Its heights count from that of the place.
+
         Raises
         ------
         ValueError
-            If it has a system and the place isn't known.
+            If the terrain has a `system` and `place` is None, or a point has no place on Earth in that system.
+
+        See Also
+        --------
+        City.checked_reference : the place of a city.
+
+        Examples
+        --------
+        >>> from uavlab.city import Place, Terrain
+        >>> survey = Terrain.from_raster([[230, 240], [240, 250]], (9.0, 48.0, 9.002, 48.001), crs="EPSG:4326")
+        >>> survey
+        <Terrain: 16 points, 18 triangles, heights from 230 to 250 m, in EPSG:4326 (WGS 84)>
+        >>> ground = survey.placed(Place(9.0, 48.0, 230.0))
+        >>> ground, ground.points[:, :2].max(axis=0).round(1)
+        (<Terrain: 16 points, 18 triangles, heights from 0 to 20 m>, array([149.3, 111.2]))
         """
         if self.system is None:
             return self
@@ -173,7 +295,36 @@ class Terrain:
         return replace(self, beyond="nearest")
 
     def heights_at(self, places: npt.ArrayLike) -> np.ndarray:
-        """Heights (N,) [m] of the ground at places (N, 2); NaN where it isn't known."""
+        """Heights of the ground at places in plan: linear on each triangle.
+
+        Parameters
+        ----------
+        places : (N, 2) array
+            In the coordinates of `points`: in metres, if there is no `system`.
+
+        Returns
+        -------
+        (N,) array
+            [m], or in the unit of the system; NaN where it isn't known, which is nowhere with `beyond="nearest"`.
+
+        Raises
+        ------
+        ValueError
+            If `places` hasn't shape (N, 2) or is not finite.
+
+        See Also
+        --------
+        Terrain.filled : the same ground that goes on where it has no data.
+        City.height_above_ground : height of points above the ground of a city.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from uavlab.city import Terrain
+        >>> ground = Terrain.from_raster([[0, 1, np.nan]], (0, 0, 30, 10))
+        >>> ground.heights_at([(10, 5), (29, 5)]), ground.filled().heights_at([(10, 5), (29, 5)])
+        (array([0.5, nan]), array([0.5, 1. ]))
+        """
         from scipy.spatial import cKDTree
 
         plan = checks.numbers("places", places)

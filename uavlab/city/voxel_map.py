@@ -21,13 +21,42 @@ def read_voxels(path: str | Path, *, cell: float = 1.0) -> City:
     Parameters
     ----------
     path : str or Path
+        UTF-8 text.
     cell : float
-        Edge of a voxel [m].
+        Edge of a voxel [m], above 0.
+
+    Returns
+    -------
+    City
 
     Raises
     ------
     ValueError
-        If the header or a line is not as described; the message names the line.
+        If the header of the file at `path` or a line is not as described, where the message names the line; the map has
+        over 500 million voxels; or `cell` is not above 0.
+    FileNotFoundError
+        If there is no file at `path`.
+
+    See Also
+    --------
+    read_city : finds out the format.
+    City : a city from an array of voxels.
+
+    References
+    ----------
+    D. Brewer and N. R. Sturtevant, "Benchmarks for pathfinding in 3D voxel space", Symposium on Combinatorial Search,
+    2018.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from uavlab.city import read_voxels
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "maze.3dmap")
+    ...     _ = path.write_text("voxel 4 3 2\\n0 0 0\\n3 2 1")
+    ...     city = read_voxels(path, cell=2.0)
+    >>> city, city.is_free([(1, 1, 1), (3, 1, 1)]).tolist()
+    (<City maze: 4 × 3 × 2 voxels of 2 m, 0 buildings>, [False, True])
     """
     path = Path(path)
     with path.open(encoding="utf-8-sig", errors="replace") as file:

@@ -44,7 +44,24 @@ class NoFlyZone:
     Raises
     ------
     ValueError
-        If the outline crosses itself or has fewer than three corners, or `upper` is not above `lower`.
+        If `outline` or one of `holes` has fewer than three different corners or one that is not finite, they cross,
+        `lower` is not finite, or `upper` is not above `lower`.
+
+    See Also
+    --------
+    read_no_fly : reads zones from a file.
+    City.blocked : where a UAV may not be.
+
+    Examples
+    --------
+    >>> import dataclasses
+    >>> from uavlab.city import NoFlyZone, table1_city
+    >>> school = NoFlyZone([(0, 0), (20, 0), (20, 10), (0, 10)], upper=50.0, name="school")
+    >>> school
+    <NoFlyZone school: 4 corners, 0 to 50 m above ground>
+    >>> city = dataclasses.replace(table1_city(cell=5.0), no_fly=[school])
+    >>> city.zone_at((10, 5, 20)), bool(city.is_free((10, 5, 20)))
+    ('school', True)
     """
 
     outline: np.ndarray
@@ -64,13 +81,41 @@ class NoFlyZone:
         for corners in (self.outline, *self.holes):
             corners.setflags(write=False)
 
+    def __repr__(self) -> str:
+        corners = sum(map(len, (self.outline, *self.holes)))
+        heights = f"{self.lower:g} m and up" if self.upper == np.inf else f"{self.lower:g} to {self.upper:g} m"
+        return f"<NoFlyZone {self.name}: {corners} corners, {heights} above ground>"
+
     @cached_property
     def polygon(self) -> shapely.Polygon:
         """In plan [m]."""
         return shapely.Polygon(self.outline, self.holes)
 
     def pieces(self, low: float, high: float) -> list[np.ndarray]:
-        """Corners (2M, 3) of convex prisms [m] that make it up between two heights."""
+        """Convex prisms that make it up between two heights of the map; its own `lower` and `upper` aren't asked.
+
+        Parameters
+        ----------
+        low, high : float
+            Heights z of their lower and upper end [m].
+
+        Returns
+        -------
+        list of (2M, 3) arrays
+            Corners of each [m].
+
+        See Also
+        --------
+        City.zone_building : the zone as a body on a map, at its own heights above ground.
+
+        Examples
+        --------
+        >>> from uavlab.city import NoFlyZone
+        >>> lot = NoFlyZone([(0, 0), (20, 0), (20, 10), (10, 10), (10, 20), (0, 20)])
+        >>> pieces = lot.pieces(0, 50)
+        >>> len(pieces), pieces[0].shape
+        (4, (6, 3))
+        """
         return [extrude(part, low, high) for part in convex_parts(self.polygon)]
 
 
@@ -100,6 +145,7 @@ def read_no_fly(
     Parameters
     ----------
     path : str or Path
+        UTF-8 text, as for `read_geojson`.
     city : City
         On whose map they lie.
     lower, upper : str or float
@@ -109,16 +155,42 @@ def read_no_fly(
         The reference system of the coordinates, as for `read_geojson`; "local": the city's own metres,
         as where neither file nor city knows where on Earth it lies.
 
+    Returns
+    -------
+    tuple of NoFlyZone
+        One for each polygon.
+
     Raises
     ------
     ValueError
-        If the file is broken or has no polygon, a limit can't be understood, or the city doesn't know where on Earth it
-        lies.
+        If the file at `path` is broken or has no polygon; `lower` or `upper` is neither a text nor a number, the height
+        that a zone has there can't be understood, or is out of the range of `NoFlyZone`; `crs` is no system that pyproj
+        knows; or `city` has no `reference` though the zones lie on Earth.
+    FileNotFoundError
+        If there is no file at `path`.
 
     Warns
     -----
     UserWarning
         If a feature has no area.
+
+    See Also
+    --------
+    NoFlyZone : one made by hand.
+    read_geojson : reads buildings from such a file.
+
+    Examples
+    --------
+    >>> import json, pathlib, tempfile
+    >>> from uavlab.city import read_no_fly, table1_city
+    >>> field = {"type": "Polygon", "coordinates": [[[0, 0], [30, 0], [30, 20], [0, 20], [0, 0]]]}
+    >>> zone = {"type": "Feature", "properties": {"name": "airfield", "upper": "400 ft"}, "geometry": field}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "zones.geojson")
+    ...     _ = path.write_text(json.dumps(zone))
+    ...     zones = read_no_fly(path, table1_city(cell=5.0), crs="local")
+    >>> zones
+    (<NoFlyZone airfield: 4 corners, 0 to 121.92 m above ground>,)
     """
     for bound, limit in (("lower", lower), ("upper", upper)):
         if not isinstance(limit, str | int | float | np.integer | np.floating):

@@ -26,12 +26,35 @@ HIGHEST = 50_000.0
 
 
 def terminal_speed(uav: UAV = RISK_QUADROTOR, *, air_density: float = AIR_DENSITY) -> float:
-    """Speed at which drag carries the weight, √(2 m g / (R_I A ρ_A)) [m/s]; 62.6 m/s with the papers' values.
+    """Speed at which drag carries the weight, √(2 m g / (R_I A ρ_A)); 62.6 m/s with the papers' values.
+
+    Parameters
+    ----------
+    uav : UAV
+        Its mass m with payload, and its drag area R_I·A as a wreck.
+    air_density : float
+        ρ_A [kg/m³], above 0; 1.225 at sea level, 1.0 at 2000 m.
+
+    Returns
+    -------
+    float
+        [m/s]
 
     Raises
     ------
     ValueError
-        If the density is not above 0, or `uav` is no `UAV`.
+        If `air_density` is not above 0 and finite, or `uav` is no `UAV`.
+
+    See Also
+    --------
+    fall_speed : how near a fall from a height comes to it.
+
+    Examples
+    --------
+    >>> from uavlab.risk import terminal_speed
+    >>> from uavlab.vehicle import RISK_QUADROTOR
+    >>> round(terminal_speed(), 1), round(terminal_speed(RISK_QUADROTOR.loaded(0.5)), 1)
+    (62.6, 73.1)
     """
     checks.instance("uav", uav, UAV)
     checks.positive("air_density", air_density)
@@ -66,7 +89,21 @@ def fall_speed(
     Raises
     ------
     ValueError
-        If a height is negative or not finite, or the density is not above 0.
+        If `height` is negative or not finite, `air_density` is not above 0 and finite, `uav` is no `UAV`, or
+        `as_printed` isn't True or False.
+
+    See Also
+    --------
+    ballistic_fall : with drag on the forward speed too.
+    terminal_speed : the limit for a long fall.
+
+    Examples
+    --------
+    >>> from uavlab.risk import fall_speed
+    >>> fall_speed([10, 30, 60]).round(1)
+    array([13.8, 23.4, 31.9])
+    >>> fall_speed([10, 30, 60], as_printed=True).round(1)  # as of half the height
+    array([ 9.8, 16.8, 23.4])
     """
     checks.not_negative("height", height)
     fastest = terminal_speed(uav, air_density=air_density)
@@ -75,7 +112,21 @@ def fall_speed(
 
 
 class Fall(NamedTuple):
-    """Where and how a wreck arrives; each of the shape of the height asked for."""
+    """Where and how a wreck arrives; each of the shape of the height asked for.
+
+    See Also
+    --------
+    ballistic_fall : what gives one.
+
+    Examples
+    --------
+    >>> from uavlab.risk import ballistic_fall
+    >>> fall = ballistic_fall(30.0)
+    >>> fall
+    <Fall of 2.5 s: lands 38.2 m ahead, at 14.1 m/s forward and 23.1 m/s down>
+    >>> round(float(fall.drift), 1)
+    38.2
+    """
 
     duration: np.ndarray
     """Of the fall [s]."""
@@ -85,6 +136,18 @@ class Fall(NamedTuple):
     """Horizontal speed when it lands [m/s]."""
     fall_speed: np.ndarray
     """Vertical speed when it lands [m/s], positive downwards."""
+
+    def __repr__(self) -> str:
+        if not np.size(self.duration):
+            return "<Fall: none>"
+        duration, drift, forward, down = map(span, self)
+        return f"<Fall of {duration} s: lands {drift} m ahead, at {forward} m/s forward and {down} m/s down>"
+
+
+def span(values: np.ndarray) -> str:
+    """Least and greatest of numbers in words; one number if they are equal."""
+    low, high = np.min(values), np.max(values)
+    return f"{low:.1f}" if low == high else f"{low:.1f} to {high:.1f}"
 
 
 def ballistic_fall(
@@ -100,14 +163,15 @@ def ballistic_fall(
     Parameters
     ----------
     height : float or array
-        Height lost [m], at least 0.
+        Height lost [m], 0 to 50 000.
     uav : UAV
+        Its mass m with payload, and its drag area R_I·A as a wreck.
     speed : float, optional
         Airspeed when the UAV fails [m/s], at least 0; its cruise speed by default.
     pitch : float
-        Climb angle at that moment [rad]; a UAV that climbs first rises on.
+        Climb angle at that moment [rad], −π/2 to π/2; a UAV that climbs first rises on.
     air_density : float
-        ρ_A [kg/m³].
+        ρ_A [kg/m³], above 0.
 
     Returns
     -------
@@ -116,7 +180,22 @@ def ballistic_fall(
     Raises
     ------
     ValueError
-        If an argument is negative where it must not be, or not finite.
+        If `height` is not from 0 to 50 000 m, `speed` is negative or not finite, `pitch` is not from −π/2 to π/2,
+        `air_density` is not above 0 and finite, or `uav` is no `UAV`.
+
+    See Also
+    --------
+    fall_speed : the papers' closed form, with drag downwards only.
+    RiskMap.rate_ahead : the risk where such falls end.
+
+    Examples
+    --------
+    A wreck from 30 m lands far ahead of the failure, if the UAV flew level or climbed.
+
+    >>> import numpy as np
+    >>> from uavlab.risk import ballistic_fall
+    >>> [round(float(ballistic_fall(30, pitch=np.radians(degrees)).drift), 1) for degrees in (-45, 0, 45)]
+    [17.6, 38.2, 41.4]
     """
     checks.within("height", height, 0.0, HIGHEST, "m")
     heights = checks.numbers("height", height)
@@ -166,7 +245,7 @@ def fall_motion(uav: UAV, speed: float, depth: float, air_density: float) -> tup
 
 
 def impact_energy(mass: float, forward_speed: npt.ArrayLike, fall_speed: npt.ArrayLike) -> np.ndarray:
-    """Kinetic energy on impact, E_imp = m (V² + V_y²) / 2 [J] (below RISK-ACO Eq. 8, PSO-BAS Eq. 6).
+    """Kinetic energy on impact, E_imp = m (V² + V_y²) / 2 (below RISK-ACO Eq. 8, PSO-BAS Eq. 6).
 
     Parameters
     ----------
@@ -175,10 +254,26 @@ def impact_energy(mass: float, forward_speed: npt.ArrayLike, fall_speed: npt.Arr
     forward_speed, fall_speed : float or arrays
         V and V_y on impact [m/s], at least 0.
 
+    Returns
+    -------
+    float or array
+        E_imp [J].
+
     Raises
     ------
     ValueError
-        If an argument is out of its range or not finite.
+        If `mass` is not above 0, `forward_speed` or `fall_speed` is negative, or one of them is not finite.
+
+    See Also
+    --------
+    impact_fatality : the chance that it kills.
+    fall_speed : V_y after a fall.
+
+    Examples
+    --------
+    >>> from uavlab.risk import fall_speed, impact_energy
+    >>> impact_energy(1.38, 16.0, fall_speed([10, 30, 60])).round()
+    array([309., 554., 878.])
     """
     checks.positive("mass", mass)
     checks.not_negative("forward_speed", forward_speed)
@@ -222,7 +317,21 @@ def lethal_area(
     Raises
     ------
     ValueError
-        If an argument is negative or not finite, or a fall from above the ground ends with V_y = 0.
+        If `height`, `forward_speed`, `fall_speed`, `uav_diameter`, `person_radius` or `person_height` is negative or
+        not finite, or `fall_speed` is 0 where `height` and `forward_speed` are above 0.
+
+    See Also
+    --------
+    fall_speed : V_y after a fall.
+    person_rate : what the area is for.
+
+    Examples
+    --------
+    The faster it comes down, the shorter it glides past a person.
+
+    >>> from uavlab.risk import fall_speed, lethal_area
+    >>> lethal_area([10, 30, 60], 16.0, fall_speed([10, 30, 60])).round(2)
+    array([2.35, 1.65, 1.38])
     """
     for name, value in (
         ("height", height), ("forward_speed", forward_speed), ("fall_speed", fall_speed),

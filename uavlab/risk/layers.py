@@ -45,9 +45,12 @@ def raster_layer(
 ) -> np.ndarray:
     """A raster on the columns of a city, shared out by area: its sum over the map stays what it was.
 
+    A column has Σ vᵢ Aᵢ / Σ Aᵢ, with the area Aᵢ that it shares with pixel i of value vᵢ.
+
     Parameters
     ----------
     city : City
+        On whose columns it is brought.
     values : (rows, columns) array
         As in a picture: the first row lies in the north, the first column in the west. NaN, or masked: no data.
     bounds : (west, south, east, north)
@@ -63,12 +66,37 @@ def raster_layer(
     Returns
     -------
     (nx, ny) array
+        In the unit of the values, or per m² where `per` is given.
 
     Raises
     ------
     ValueError
-        If `values` isn't two-dimensional, or below 0 with `per`, bounds are not in order or lie elsewhere, the city has
-        no reference for `crs`, or the raster doesn't cover the city and there is no `fill`.
+        If `values` isn't two-dimensional, has something infinite, or is below 0 with `per`; `bounds` are not in order
+        or lie elsewhere; `per` is none of its words; `crs` is no system that pyproj knows; `city` has no `reference`
+        for it, or is no `City`; `fill` is not one finite number, or is below 0 with `per`; or the raster doesn't cover
+        the city and there is no `fill`.
+
+    See Also
+    --------
+    road_layer : cars from the lines of roads.
+    uavlab.city.Terrain.from_raster : heights of the ground from a raster.
+
+    References
+    ----------
+    Pixels are cut to columns as in I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Communications of
+    the ACM, 1974.
+
+    Examples
+    --------
+    Two pixels with 30 and 6 people, brought to three columns of 100 m: people per m², and people.
+
+    >>> import numpy as np
+    >>> from uavlab.city import City
+    >>> from uavlab.risk import raster_layer
+    >>> city = City(np.zeros((3, 1, 1), dtype=bool), cell=100.0)
+    >>> people = raster_layer(city, [[30, 6]], (0, 0, 300, 100), per="pixel")
+    >>> people.ravel().round(5), (people * 100**2).ravel().round(1)
+    (array([0.002 , 0.0012, 0.0004]), array([20., 12.,  4.]))
     """
     checks.instance("city", city, City)
     factor = PER[per] if per is None else PER[checks.one_of("per", per, [name for name in PER if name])]
@@ -159,6 +187,7 @@ def road_layer(
     Parameters
     ----------
     city : City
+        On whose columns they are brought.
     lines : sequence of (M, 2) arrays
         Middle line of each road, x and y [m], or in the coordinates of `crs`.
     width : float, or one for each line
@@ -178,8 +207,27 @@ def road_layer(
     Raises
     ------
     ValueError
-        If a line hasn't shape (M, 2) with M of at least 2 or is a mere point, a number is out of its range, or the
-        city has no reference for `crs`.
+        If `lines` is no list, or one of them hasn't shape (M, 2) with M of at least 2, is not finite or shorter than
+        0.1 m; `width` or `cars_per_km` is neither one number nor one for each line; `width` or `lane_width` is not
+        above 0; `cars_per_km` is negative, or more than fit on a lane; `crs` is no system that pyproj knows; or `city`
+        has no `reference` for it, or is no `City`.
+
+    See Also
+    --------
+    vehicle_share : C of a road.
+    osm_layers : roads from a file.
+
+    Examples
+    --------
+    A road of two lanes and 40 m with 10 cars per km of each has 0.8 cars, of 8.4 m² each.
+
+    >>> import numpy as np
+    >>> from uavlab.city import City
+    >>> from uavlab.risk import road_layer
+    >>> city = City(np.zeros((8, 3, 1), dtype=bool), cell=5.0)
+    >>> share = road_layer(city, [[(0, 7.5), (40, 7.5)]], 6.0, cars_per_km=10.0)
+    >>> share[0].round(4), round(float(share.sum() * 5.0**2 / 8.4), 3)
+    (array([0.0028, 0.028 , 0.0028]), 0.8)
     """
     checks.instance("city", city, City)
     if not isinstance(lines, Sequence | np.ndarray):
@@ -238,20 +286,38 @@ def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = H
     Parameters
     ----------
     city : City
+        Whose roofs give shelter.
     ground : name, number, or (nx, ny) array of either
         Open ground: "none", "sparse trees", "trees or low buildings", "high buildings", "industry" (PSO-BAS
         Table 1), or p_s itself.
     high : float
-        Height of roofs above the ground from which a building counts as high [m].
+        Height of roofs above the ground from which a building counts as high [m], at least 0.
 
     Returns
     -------
     (nx, ny) array
+        p_s, 0 to 1.
 
     Raises
     ------
     ValueError
-        If a name is none of Table 1's, a number not in [0, 1], or the shape not the city's ground plan.
+        If `ground` has a name that is none of Table 1's, a number that is not from 0 to 1, or another shape than the
+        city's ground plan; `high` is negative or not finite; or `city` is no `City`.
+
+    See Also
+    --------
+    osm_layers : open ground from a file.
+    impact_fatality : what shelter is for.
+
+    Examples
+    --------
+    >>> from uavlab.city import Building, City
+    >>> from uavlab.risk import shelter_layer
+    >>> shed = Building.prism([(5, 0), (10, 0), (10, 5), (5, 5)], 4)
+    >>> tower = Building.prism([(10, 0), (15, 0), (15, 5), (10, 5)], 40)
+    >>> city = City.from_buildings([shed, tower], cell=5.0, origin=(0, 0, 0), size=(20, 5, 50))
+    >>> shelter_layer(city, "sparse trees").ravel()
+    array([0.25, 0.5 , 0.75, 0.25])
     """
     checks.instance("city", city, City)
     checks.not_negative_number("high", high)

@@ -29,6 +29,7 @@ class RiskMap:
     Attributes
     ----------
     city : City
+        Over which it flies.
     population_density : (nx, ny) array, or one number for all
         ρ [1/m²], 0 to 10; 0.03 is 30 000 per km².
     shelter : (nx, ny) array, or one number
@@ -47,8 +48,27 @@ class RiskMap:
     Raises
     ------
     ValueError
-        If a layer has another shape than the city's ground plan, a density is negative or above 10 per m²,
-        a shelter or share not in [0, 1], or a height negative.
+        If `population_density`, `shelter` or `vehicle_share` is neither one number nor of the shape of the city's
+        ground plan; `population_density` is not from 0 to 10 per m²; `shelter` or `vehicle_share` is not from 0 to 1;
+        `safe_height` or `min_height` is negative or not finite; `city` is no `City`; `uav` is no `UAV`; or `as_printed`
+        isn't True or False.
+
+    See Also
+    --------
+    reference_campus : a map to begin with.
+    raster_layer : people from a raster.
+    uavlab.planners.least_risk : plans over it.
+
+    Examples
+    --------
+    Deaths in a million hours of flight, low and high, over open ground in a city.
+
+    >>> import numpy as np
+    >>> from uavlab.city import City
+    >>> from uavlab.risk import RiskMap
+    >>> risk = RiskMap(City(np.zeros((10, 10, 8), dtype=bool), cell=5.0), population_density=0.03, shelter=0.0)
+    >>> risk, (1e6 * risk.rate[0, 0, [1, 7]]).round(2)
+    (<RiskMap of city: 10 × 10 × 8 voxels of 5 m>, array([5.02, 2.98]))
     """
 
     city: City
@@ -128,13 +148,37 @@ class RiskMap:
         Parameters
         ----------
         route : Route or Curve
+            On the map; not arriving is no hindrance, if it has points.
         drift : bool
             Take the rate where the wreck lands that fails while it flies along the route, see `rate_ahead`.
+
+        Returns
+        -------
+        float
+            [1/h]
 
         Raises
         ------
         ValueError
-            If the route leaves the map, or there is none.
+            If `route` leaves the map, was not found, or is neither route nor curve.
+
+        See Also
+        --------
+        RiskMap.fatalities : deaths per mission.
+        RiskMap.cell_sum : the papers' sum.
+
+        Examples
+        --------
+        The UAV flies over trees towards an open square. Its wreck may land there, which is over 40 times the risk.
+
+        >>> from uavlab.city import City
+        >>> from uavlab.risk import RiskMap
+        >>> from uavlab.route import Route
+        >>> city = City.from_buildings([], cell=5.0, origin=(0, 0, 0), size=(50, 50, 40))
+        >>> risk = RiskMap(city, 0.03, shelter=[[0.5] * 10] * 5 + [[0.0] * 10] * 5)
+        >>> route = Route([(2.5, 7.5, 22.5), (25, 7.5, 22.5)])
+        >>> [f"{risk.integral(route, drift=drift):.1e}" for drift in (False, True)]
+        ['3.3e-07', '1.5e-05']
         """
         route = found(route)
         if not drift:
@@ -151,10 +195,37 @@ class RiskMap:
 
         Each voxel counts once, however long the way in it: diagonals come free, and halving the voxels doubles it.
 
+        Parameters
+        ----------
+        route : Route or Curve
+            On the map; not arriving is no hindrance, if it has points.
+
+        Returns
+        -------
+        float
+            [1/h]
+
         Raises
         ------
         ValueError
-            If the route leaves the map, or there is none.
+            If `route` leaves the map, was not found, or is neither route nor curve.
+
+        See Also
+        --------
+        RiskMap.integral : the cost that planners minimise.
+
+        Examples
+        --------
+        A diagonal through all ten voxels is √2 times as long as a straight way, and has the same sum.
+
+        >>> import numpy as np
+        >>> from uavlab.city import City
+        >>> from uavlab.risk import RiskMap
+        >>> from uavlab.route import Route
+        >>> risk = RiskMap(City(np.zeros((10, 10, 8), dtype=bool), cell=5.0), 0.03, 0.0)
+        >>> ways = [Route([(0, 0, 22.5), (49.999, north, 22.5)]) for north in (0, 49.999)]
+        >>> [f"{risk.cell_sum(way):.2e} {risk.integral(way):.2e}" for way in ways]
+        ['3.45e-05 3.45e-05', '3.45e-05 4.88e-05']
         """
         route = found(route)
         city = self.city
@@ -168,13 +239,34 @@ class RiskMap:
         Parameters
         ----------
         route : Route or Curve
+            On the map; not arriving is no hindrance, if it has points.
         speed : float, optional
             V over ground [m/s], above 0; the UAV's cruise speed by default.
+
+        Returns
+        -------
+        float
+            Deaths, far below 1.
 
         Raises
         ------
         ValueError
-            If the speed is not above 0, the route leaves the map, or there is none.
+            If `speed` is not above 0 and finite, or `route` leaves the map, was not found, or is neither route nor
+            curve.
+
+        See Also
+        --------
+        RiskMap.integral : the cost that planners minimise.
+
+        Examples
+        --------
+        At a quarter of the speed the UAV is over people for four times as long.
+
+        >>> from uavlab.risk import reference_campus
+        >>> from uavlab.route import Route
+        >>> campus, route = reference_campus(), Route([(12.5, 17.5, 72.5), (112.5, 112.5, 72.5)])
+        >>> f"{campus.fatalities(route):.2e} {campus.fatalities(route, speed=4.0):.2e}"
+        '3.43e-09 1.37e-08'
         """
         speed = checks.positive_number("speed", self.uav.cruise_speed if speed is None else speed)
         route = found(route)

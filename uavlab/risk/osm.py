@@ -63,7 +63,7 @@ SHELTERED = {
 
 
 class Layers(NamedTuple):
-    """What a file says of the ground, for `RiskMap`."""
+    """What a file says of the ground, for `RiskMap`; see `osm_layers`."""
 
     shelter: np.ndarray
     """(nx, ny) p_s."""
@@ -71,6 +71,10 @@ class Layers(NamedTuple):
     """(nx, ny) share of the ground under cars."""
     source: Source
     """What was taken and assumed."""
+
+    def __repr__(self) -> str:
+        nx, ny = self.shelter.shape
+        return f"<Layers from {self.source.name}: shelter and vehicle_share of {nx} × {ny} columns>"
 
 
 def osm_layers(
@@ -86,12 +90,14 @@ def osm_layers(
     Parameters
     ----------
     city : City
+        It must know its `reference`.
     path : str or Path
+        UTF-8 text, as for `read_geojson`.
     cars_per_km : float, or mapping from classes of `highway` to floats
         K, cars per kilometre of a lane, at least 0. By default the papers' 0.1 on all roads, a road at night; by class
         `CARS_BY_CLASS` has assumed values of an ordinary day. A class that a mapping leaves out has no cars.
     lane_width : float
-        D_road [m], of roads that tell their lanes or nothing.
+        D_road [m], above 0, of roads that tell their lanes or nothing.
     crs : anything that pyproj takes, optional
         The reference system of the coordinates, as for `read_geojson`.
 
@@ -103,8 +109,32 @@ def osm_layers(
     Raises
     ------
     ValueError
-        If the file is broken or in metres of an unknown place, a number is out of its range, or the city doesn't know
-        where on Earth it lies.
+        If the file at `path` is broken or in metres of an unknown place; `cars_per_km` is negative, not finite, or has
+        a class that is none; `lane_width` is not above 0 and finite; `crs` is not known, or can't be that of the
+        coordinates; or `city` has no `reference`, or is no `City`.
+    FileNotFoundError
+        If there is no file at `path`.
+
+    See Also
+    --------
+    uavlab.city.read_geojson : reads the buildings.
+    road_layer : cars on roads from elsewhere.
+    shelter_layer : shelter without a file.
+
+    Examples
+    --------
+    >>> import json, pathlib, tempfile
+    >>> from uavlab.city import City, Place
+    >>> from uavlab.risk import CARS_BY_CLASS, osm_layers
+    >>> city = City.from_buildings([], origin=(0, 0, 0), size=(40, 30, 30), reference=Place(13.377, 52.516), cell=5.0)
+    >>> road = {"type": "Feature", "properties": {"highway": "primary"},
+    ...         "geometry": {"type": "LineString", "coordinates": [[13.377, 52.5161], [13.378, 52.5161]]}}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "roads.geojson")
+    ...     _ = path.write_text(json.dumps(road))
+    ...     layers = osm_layers(city, path, cars_per_km=CARS_BY_CLASS)
+    >>> layers, round(float(layers.vehicle_share.max()), 4)
+    (<Layers from roads.geojson: shelter and vehicle_share of 8 × 6 columns>, 0.0092)
     """
     checks.instance("city", city, City)
     checks.positive_number("lane_width", lane_width)

@@ -41,7 +41,24 @@ def building_threat(city: City, *, constant: float = THREAT_CONSTANT) -> np.ndar
     Raises
     ------
     ValueError
-        If the city knows no buildings though voxels are occupied, or `constant` is negative.
+        If `city` knows no buildings though voxels are occupied, or is no `City`, or `constant` is negative or not
+        finite.
+
+    See Also
+    --------
+    printed_threat : the papers' minimum over a route.
+    RiskMap.threat : the same, kept with a map.
+
+    Examples
+    --------
+    A row of voxels past a house of 20 × 10 m, half of them below its sides. Above the roof there is no threat.
+
+    >>> from uavlab.city import Building, City
+    >>> from uavlab.risk import building_threat
+    >>> house = Building.prism([(10, 10), (30, 10), (30, 20), (10, 20)], 15)
+    >>> threat = building_threat(City.from_buildings([house], cell=5.0, origin=(0, 0, 0), size=(40, 30, 30)))
+    >>> threat[:, 2, 0].round(1), float(threat[:, :, 3:].max())
+    (array([11.4, 16. , 26.7, 40. , 40. , 26.7, 16. , 11.4]), 0.0)
     """
     checks.instance("city", city, City)
     checks.not_negative("constant", constant)
@@ -59,12 +76,44 @@ def building_threat(city: City, *, constant: float = THREAT_CONSTANT) -> np.ndar
 def printed_threat(route: Route, city: City, *, constant: float = THREAT_CONSTANT) -> float:
     """J_s as printed: f1 over the least distance D of any waypoint to any building (RISK-ACO Eq. 1).
 
-    Height plays no part, so a route high above a roof's centre is an infinite threat; waypoints alone are looked at.
+    J_s = f1 / min D, with D as in `building_threat`. Height plays no part, so a route high above a roof's centre is an
+    infinite threat; waypoints alone are looked at.
+
+    Parameters
+    ----------
+    route : Route
+        With at least one point.
+    city : City
+        Only buildings count that it knows as such.
+    constant : float
+        f1 [m²], at least 0.
+
+    Returns
+    -------
+    float
+        J_s [m], may be infinite.
 
     Raises
     ------
     ValueError
-        If the city knows no buildings, the route has no points, or `constant` is negative.
+        If `city` knows no buildings or is no `City`, `route` has no points or is no `Route`, or `constant` is negative
+        or not finite.
+
+    See Also
+    --------
+    building_threat : as a layer, which planners can add up.
+
+    Examples
+    --------
+    The second route passes over the house, and has no waypoint there.
+
+    >>> from uavlab.city import Building, City
+    >>> from uavlab.risk import printed_threat
+    >>> from uavlab.route import Route
+    >>> house = Building.prism([(10, 10), (30, 10), (30, 20), (10, 20)], 15)
+    >>> city = City.from_buildings([house], cell=5.0)
+    >>> [printed_threat(Route([(0, 15, 20), *over, (40, 15, 20)]), city) for over in ([(20, 15, 20)], [])]
+    [inf, 10.0]
     """
     checks.instance("route", route, Route)
     checks.instance("city", city, City)
