@@ -14,7 +14,6 @@ import numpy as np
 import pandas
 import things
 
-
 HUGE = 10**400
 DATE = np.datetime64("2026-01-01")
 RAGGED = [1.0, [2.0, 3.0]]
@@ -95,8 +94,7 @@ def kind_of(key: str, name: str, note: str, value: Any) -> str:
     if name == "crs":
         return "crs"
     if (
-        "Callable" in words
-        and callable(value)
+        ("Callable" in words and callable(value))
         or words & {"Function", "Planner"}
         or (callable(value) and not isinstance(value, type) and type(value).__name__ == "function")
     ):
@@ -272,7 +270,7 @@ def seed_mistakes(full, name, words, value):
     yield "a bool", True
     yield "complex", 1 + 2j
     yield "numpy.random", np.random
-    yield "a RandomState", np.random.RandomState(0)  # noqa: NPY002
+    yield "a RandomState", np.random.RandomState(0)
     yield "an array of floats", np.array([0.5])
     yield "a class", np.random.Generator
     yield "empty", []
