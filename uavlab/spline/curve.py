@@ -357,7 +357,7 @@ class Curve:
         ----------
         city : City
         at_most : float
-            Where the line is farther away than this [m], as if it were that; this is found sooner.
+            Where the line is farther away than this [m], this counts instead, and is found sooner.
 
         Returns
         -------
