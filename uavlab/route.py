@@ -168,8 +168,8 @@ class Route:
     Raises
     ------
     ValueError
-        If `points` hasn't shape (N, 3) or is not finite; `min_clearance`, `min_height` or `safe_height` is negative or
-        not finite; `max_height` is not above `min_height`; or `max_length` is not above 0.
+        If `points` hasn't shape (N, 3) or is not finite. If `min_clearance`, `min_height` or `safe_height` is negative
+        or not finite. If `max_height` is not above `min_height`. If `max_length` is not above 0.
 
     See Also
     --------
@@ -504,7 +504,7 @@ class Route:
         Raises
         ------
         ValueError
-            If `path` is no path; a number would be a file that is open already.
+            If `path` is no path (a number would be a file that is open already).
 
         See Also
         --------

@@ -79,10 +79,10 @@ def bas(
     Raises
     ------
     ValueError
-        If `bounds` haven't shape (D, 2), are reversed or not finite; `budget` is below 4, or 3 if greedy; `antenna` is
-        not above 0; `decay` is not above 0 and at most 1, or None without `greedy`; `block` doesn't divide the
-        coordinates; `start` lies outside of the bounds; `target` is not finite; `rng` is no generator and no seed; or
-        `f` doesn't return one value per point.
+        If `bounds` haven't shape (D, 2), are reversed or not finite. If `budget` is below 4, or 3 if greedy. If
+        `antenna` is not above 0. If `decay` is not above 0 and at most 1, or None without `greedy`. If `block` doesn't
+        divide the coordinates. If `start` lies outside of the bounds. If `target` is not finite. If `rng` is no
+        generator and no seed. If `f` doesn't return one value per point.
 
     See Also
     --------

@@ -86,10 +86,10 @@ def pso(
     Raises
     ------
     ValueError
-        If `bounds` haven't shape (D, 2), are reversed or not finite; `budget` is below `swarm`, or `swarm` below 1;
-        `inertia` is not two finite numbers; `c1` or `c2` is negative or not finite; `v_max` is not above 0; `start`
-        lies outside of the bounds or has more than `swarm` rows; `target` is not finite; `rng` is no generator and no
-        seed; or `f` doesn't return one value per point.
+        If `bounds` haven't shape (D, 2), are reversed or not finite. If `budget` is below `swarm`, or `swarm` below 1.
+        If `inertia` is not two finite numbers. If `c1` or `c2` is negative or not finite. If `v_max` is not above 0. If
+        `start` lies outside of the bounds or has more than `swarm` rows. If `target` is not finite. If `rng` is no
+        generator and no seed. If `f` doesn't return one value per point.
 
     See Also
     --------

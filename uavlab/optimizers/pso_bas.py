@@ -79,9 +79,9 @@ def pso_bas(
     Raises
     ------
     ValueError
-        If `antennae` is unknown; `antenna` is not above 0; `decay` is not above 0 and at most 1; `probes` is below 1;
-        `block` doesn't divide the coordinates; or `f`, `bounds`, `budget`, `rng`, `swarm`, `inertia`, `c1`, `c2`,
-        `v_max`, `start` or `target` is out of its range, see `pso`.
+        If `antennae` is unknown. If `antenna` is not above 0. If `decay` is not above 0 and at most 1. If `probes` is
+        below 1. If `block` doesn't divide the coordinates. If `f`, `bounds`, `budget`, `rng`, `swarm`, `inertia`, `c1`,
+        `c2`, `v_max`, `start` or `target` is out of its range, see `pso`.
 
     See Also
     --------

@@ -46,8 +46,8 @@ def cubic_bspline(
     Raises
     ------
     ValueError
-        If `control` has too few points for `ends`, another shape than (..., N, D), or a value that is not finite;
-        `per_segment` is below 1; `ends` is unknown; or `derivative` is not 0, 1 or 2.
+        If `control` has too few points for `ends`, another shape than (..., N, D), or a value that is not finite. If
+        `per_segment` is below 1. If `ends` is unknown. If `derivative` is not 0, 1 or 2.
 
     See Also
     --------
@@ -136,8 +136,8 @@ def basis_functions(t: npt.ArrayLike, knots: npt.ArrayLike, degree: int = 3, *, 
     Raises
     ------
     ValueError
-        If `knots` fall, are all equal, not finite or fewer than degree + 2; `t` lies beyond the knots; or `degree` is
-        negative.
+        If `knots` fall, are all equal, not finite or fewer than degree + 2. If `t` lies beyond the knots. If `degree`
+        is negative.
 
     See Also
     --------
@@ -205,8 +205,8 @@ def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.nda
     Raises
     ------
     ValueError
-        If `control` has not more than `degree` points, another shape than (N, D), or a value that is not finite; `t` is
-        not from 0 to 1; or `degree` is below 1.
+        If `control` has not more than `degree` points, another shape than (N, D), or a value that is not finite. If `t`
+        is not from 0 to 1. If `degree` is below 1.
 
     See Also
     --------

@@ -145,9 +145,9 @@ class Curve:
     Raises
     ------
     ValueError
-        If `control` hasn't shape (N, 3), has fewer than two points or a value that is not finite; `ends` is unknown;
-        `step` is not above 0; `min_clearance`, `min_height` or `safe_height` is negative or not finite; or `max_height`
-        is not above `min_height`.
+        If `control` hasn't shape (N, 3), has fewer than two points or a value that is not finite. If `ends` is unknown.
+        If `step` is not above 0. If `min_clearance`, `min_height` or `safe_height` is negative or not finite. If
+        `max_height` is not above `min_height`.
 
     See Also
     --------

@@ -223,10 +223,10 @@ def feasibility(
     Raises
     ------
     ValueError
-        If `curve`, `city` or `uav` is of another kind; `speed` is not above 0; `wind` is not two or three finite
-        numbers; `bank` is not between 0 and π/2; `max_pitch` is not above 0 and at most π/2, or `max_turn` not above 0
-        and at most π; `min_clearance`, `min_height` or `safe_height` is negative; `max_height` is not above
-        `min_height`; or `reading` is unknown.
+        If `curve`, `city` or `uav` is of another kind. If `speed` is not above 0. If `wind` is not two or three finite
+        numbers. If `bank` is not between 0 and π/2. If `max_pitch` is not above 0 and at most π/2, or `max_turn` not
+        above 0 and at most π. If `min_clearance`, `min_height` or `safe_height` is negative. If `max_height` is not
+        above `min_height`. If `reading` is unknown.
 
     See Also
     --------

@@ -59,10 +59,10 @@ def smooth(
     Raises
     ------
     ValueError
-        If `route`, `city` or `uav` is of another kind; or if `route` didn't arrive, repeats a waypoint, comes so near
-        to an obstacle that the body touches it, or doesn't keep `min_clearance`, `min_height`, `max_height`,
-        `safe_height` before it is smoothed; the message says where. Also if `min_clearance`, `min_height` or
-        `safe_height` is negative, or `max_height` not above `min_height`.
+        If `route`, `city` or `uav` is of another kind. If `route` didn't arrive, repeats a waypoint, comes so near to
+        an obstacle that the body touches it, or doesn't keep `min_clearance`, `min_height`, `max_height`, `safe_height`
+        before it is smoothed (the message says where). If `min_clearance`, `min_height` or `safe_height` is negative,
+        or `max_height` not above `min_height`.
 
     See Also
     --------
