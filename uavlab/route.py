@@ -19,7 +19,32 @@ PROMISES = ("min_clearance", "min_height", "max_height", "safe_height")
 
 
 def check_promises(of: Any) -> None:
-    """Refuse those that are out of their range."""
+    """Refuse a route or a curve whose promises are out of their range.
+
+    Parameters
+    ----------
+    of : Route or Curve
+        Or anything else with `min_clearance`, `min_height`, `max_height` and `safe_height` [m].
+
+    Raises
+    ------
+    ValueError
+        If `min_clearance`, `min_height` or `safe_height` is negative or not finite, or `max_height` is not above
+        `min_height`.
+
+    See Also
+    --------
+    promises_of : The promises themselves.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> from uavlab.route import check_promises
+    >>> check_promises(SimpleNamespace(min_clearance=-1.0, min_height=0.0, max_height=120.0, safe_height=0.0))
+    Traceback (most recent call last):
+        ...
+    ValueError: min_clearance must be finite and at least 0, got -1
+    """
     for name in ("min_clearance", "min_height", "safe_height"):
         checks.not_negative_number(name, getattr(of, name))
     if not of.max_height > of.min_height:
@@ -27,12 +52,63 @@ def check_promises(of: Any) -> None:
 
 
 def promises_of(one: Any, **instead: float | None) -> dict[str, Any]:
-    """What a route or a curve promises, but for what is asked for instead; None asks for nothing."""
+    """What a route or a curve promises, but for what is asked for instead.
+
+    Parameters
+    ----------
+    one : Route or Curve
+    **instead : float or None
+        By the names of the promises [m]; None leaves what is promised.
+
+    Returns
+    -------
+    dict
+        `min_clearance`, `min_height`, `max_height` and `safe_height` [m].
+
+    See Also
+    --------
+    check_promises : Refuses what is out of its range.
+
+    Examples
+    --------
+    >>> from uavlab.route import Route, promises_of
+    >>> route = Route([(5, 5, 30), (40, 5, 30)], min_clearance=3.5)
+    >>> promises_of(route, max_height=120.0)
+    {'min_clearance': 3.5, 'min_height': 0.0, 'max_height': 120.0, 'safe_height': 0.0}
+    """
     return {name: getattr(one, name) if instead.get(name) is None else instead[name] for name in PROMISES}
 
 
 def as_route(way: Route | Way, name: str = "route") -> Route:
-    """What is drawn, measured or flown as a route: itself, or a curve's points, joined by straight legs."""
+    """What is drawn, measured or flown as a route: itself, or a curve's points, joined by straight legs.
+
+    Parameters
+    ----------
+    way : Route or Curve
+        Or anything else with a method `route()`.
+    name : str
+        Of the argument, for the message.
+
+    Returns
+    -------
+    Route
+
+    Raises
+    ------
+    ValueError
+        If `way` is neither a route nor can be made one.
+
+    See Also
+    --------
+    uavlab.spline.Curve.route : With legs of any length.
+
+    Examples
+    --------
+    >>> from uavlab.route import as_route
+    >>> from uavlab.spline import Curve
+    >>> as_route(Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)]))
+    <Route by curve: 69.7 m, 901 waypoints>
+    """
     made: Any = way
     if not isinstance(way, type) and callable(getattr(way, "route", None)):
         made = made.route()
@@ -41,7 +117,19 @@ def as_route(way: Route | Way, name: str = "route") -> Route:
 
 
 class Way(Protocol):
-    """What can be made a route, such as a `uavlab.spline.Curve`."""
+    """What can be made a route, such as a `uavlab.spline.Curve`.
+
+    See Also
+    --------
+    as_route : Takes it.
+
+    Examples
+    --------
+    >>> from uavlab.spline import Curve
+    >>> way = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+    >>> way.route()
+    <Route by curve: 69.7 m, 901 waypoints>
+    """
 
     def route(self) -> Route: ...
 
@@ -80,7 +168,24 @@ class Route:
     Raises
     ------
     ValueError
-        If `points` hasn't shape (N, 3) or is not finite, or a promise is out of its range.
+        If `points` hasn't shape (N, 3) or is not finite. If `min_clearance`, `min_height` or `safe_height` is negative
+        or not finite. If `max_height` is not above `min_height`. If `max_length` is not above 0.
+
+    See Also
+    --------
+    uavlab.planners.astar : Plans one, as all planners do.
+    uavlab.spline.smooth : Makes it a curve.
+    as_route : Makes a curve a route.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.route import Route
+    >>> route = Route([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+    >>> route
+    <Route by given: 80.0 m, 3 waypoints>
+    >>> np.degrees(route.turn).round(1), route.distance
+    (array([90.]), array([ 0., 35., 80.]))
     """
 
     points: np.ndarray
@@ -111,7 +216,33 @@ class Route:
 
     @classmethod
     def none(cls, planner: str, reason: str, **info: Any) -> Route:
-        """The answer of a planner that found no way, and why."""
+        """The answer of a planner that found no way, and why.
+
+        Parameters
+        ----------
+        planner : str
+            Who looked for one.
+        reason : str
+            Why there is none.
+        **info
+            What the planner noted, see `info`.
+
+        Returns
+        -------
+        Route
+            Without points, `reached` False, of infinite cost.
+
+        See Also
+        --------
+        Route.reached : What to ask a route first.
+
+        Examples
+        --------
+        >>> from uavlab.route import Route
+        >>> route = Route.none("A*", "no free way", expanded=12)
+        >>> route, route.cost
+        (<Route by A*: not reached, no free way>, inf)
+        """
         return cls(np.empty((0, 3)), planner, reached=False, reason=reason, cost=np.inf, info=info)
 
     def __repr__(self) -> str:
@@ -163,12 +294,35 @@ class Route:
     def clearance_profile(self, city: City) -> tuple[np.ndarray, np.ndarray]:
         """Clearance all along the route, by exact voxel traversal.
 
+        Parameters
+        ----------
+        city : City
+
         Returns
         -------
         distance : (M,) array
             Distance flown at the middle of the stay in each voxel [m].
         clearance : (M,) array
             Least distance to an obstacle's surface during the stay [m]; 0 outside of the map.
+
+        Raises
+        ------
+        ValueError
+            If `city` is no City.
+
+        See Also
+        --------
+        Route.clearance : The least of it.
+        uavlab.plot.profile : Draws it.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> from uavlab.route import Route
+        >>> route = Route([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+        >>> distance, clearance = route.clearance_profile(table1_city())
+        >>> f"from {clearance.min():.1f} to {clearance.max():.1f} m"
+        'from 5.0 to 10.8 m'
         """
         checks.instance("city", city, City)
         if len(self.points) == 0:
@@ -183,9 +337,34 @@ class Route:
         return leave - length / 2, np.where(inside, city.segment_distance(start, end), 0.0)
 
     def clearance(self, city: City) -> float:
-        """Least distance to an obstacle's surface on the whole way [m].
+        """Least distance to an obstacle's surface on the whole way, exact, whatever the voxels that are passed.
 
-        Exact, whatever the voxels that are passed; 0 where it leaves the map, NaN for a route without points.
+        Parameters
+        ----------
+        city : City
+
+        Returns
+        -------
+        float
+            [m]; 0 where it leaves the map, NaN for a route without points.
+
+        Raises
+        ------
+        ValueError
+            If `city` is no City.
+
+        See Also
+        --------
+        Route.clearance_profile : Along the way.
+        uavlab.city.City.segment_distance : Of any straight lines.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> from uavlab.route import Route
+        >>> route = Route([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+        >>> round(route.clearance(table1_city()), 2)
+        5.0
         """
         checks.instance("city", city, City)
         if len(self.points) == 0:
@@ -205,10 +384,29 @@ class Route:
         values : (nx, ny, nz) array
             A price per metre gives the cost of the route, True in a zone the metres within it.
 
+        Returns
+        -------
+        float
+            In the unit of the values times metres.
+
         Raises
         ------
         ValueError
-            If the values haven't the city's shape, or the route leaves the map.
+            If `city` is no City, `values` haven't its shape, or the route leaves the map.
+
+        See Also
+        --------
+        Route.voxels : The lengths by which the values are weighed.
+        uavlab.risk.RiskMap.integral : Of risk.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> from uavlab.route import Route
+        >>> route = Route([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+        >>> city = table1_city()
+        >>> round(route.integral(city, city.clearance < 7.0), 1)  # metres nearer than 7 m to a building
+        39.0
         """
         checks.instance("city", city, City)
         if np.shape(values) != city.shape:
@@ -217,12 +415,37 @@ class Route:
         return float(checks.numbers("values", values)[tuple(index.T)] @ length)
 
     def voxels(self, city: City) -> tuple[np.ndarray, np.ndarray]:
-        """The voxels (M, 3) that the route passes through, in order, and its length (M,) in each [m].
+        """The voxels that the route passes through, in order, and its length in each.
+
+        Parameters
+        ----------
+        city : City
+
+        Returns
+        -------
+        index : (M, 3) int array
+            i, j, k of each voxel.
+        length : (M,) array
+            [m]
 
         Raises
         ------
         ValueError
-            If the route leaves the map.
+            If `city` is no City, or the route leaves the map.
+
+        See Also
+        --------
+        Route.integral : Of values in the voxels.
+        uavlab.city.City.voxels_along : Of any points.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> from uavlab.route import Route
+        >>> route = Route([(0.5, 0.5, 30.5), (2.5, 0.5, 30.5)])
+        >>> index, length = route.voxels(table1_city())
+        >>> index.tolist(), length.round(2)
+        ([[0, 0, 30], [1, 0, 30], [2, 0, 30]], array([0.5, 1. , 0.5]))
         """
         checks.instance("city", city, City)
         if not city.inside(self.points).all():
@@ -232,10 +455,31 @@ class Route:
     def resample(self, step: float) -> Route:
         """The same way with a waypoint at least every `step` metres; all waypoints stay.
 
+        Parameters
+        ----------
+        step : float
+            [m], above 0; typically half a voxel to some voxels.
+
+        Returns
+        -------
+        Route
+            With the same promises.
+
         Raises
         ------
         ValueError
-            If `step` is not above 0.
+            If `step` is not finite and above 0.
+
+        See Also
+        --------
+        uavlab.planners.shortcut : Leaves out waypoints instead.
+
+        Examples
+        --------
+        >>> from uavlab.route import Route
+        >>> route = Route([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+        >>> route.resample(10.0)
+        <Route by given: 80.0 m, 10 waypoints>
         """
         if not (np.isfinite(step) and step > 0):
             raise ValueError(f"step must be a distance in metres, above 0, got {step!r}")
@@ -252,10 +496,32 @@ class Route:
     def to_csv(self, path: str | Path) -> None:
         """Write waypoints and the distance flown to each, in metres: columns x_m, y_m, z_m, distance_m.
 
+        Parameters
+        ----------
+        path : str or Path
+            What is there is overwritten.
+
         Raises
         ------
         ValueError
-            If `path` is no path; a number would be a file that is open already.
+            If `path` is no path (a number would be a file that is open already).
+
+        See Also
+        --------
+        uavlab.scene.page : A page to look at.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from uavlab.route import Route
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = Path(folder) / "route.csv"
+        ...     Route([(5, 5, 30), (40, 5, 30)]).to_csv(path)
+        ...     print(path.read_text().rstrip())
+        x_m,y_m,z_m,distance_m
+        5.0,5.0,30.0,0.0
+        40.0,5.0,30.0,35.0
         """
         if not isinstance(path, str | Path):
             raise ValueError(f"path must be the name of a file, got {path!r}")

@@ -74,12 +74,34 @@ def bas(
     Returns
     -------
     Result
+        Its `swarm` is the one point where the beetle ended; `best` is the best that it smelled or found.
 
     Raises
     ------
     ValueError
-        If bounds are reversed or not finite, the budget is too small, the start lies outside of the bounds, or
-        another argument is out of its range.
+        If `bounds` haven't shape (D, 2), are reversed or not finite. If `budget` is below 4, or 3 if greedy. If
+        `antenna` is not above 0. If `decay` is not above 0 and at most 1, or None without `greedy`. If `block` doesn't
+        divide the coordinates. If `start` lies outside of the bounds. If `target` is not finite. If `rng` is no
+        generator and no seed. If `f` doesn't return one value per point.
+
+    See Also
+    --------
+    pso : A swarm without antennae.
+    pso_bas : A swarm with antennae.
+
+    References
+    ----------
+    Jiang and Li, BAS: Beetle antennae search algorithm for optimization problems, 2017.
+
+    Examples
+    --------
+    >>> from uavlab.optimizers import bas
+    >>> def sphere(points):
+    ...     return (points**2).sum(axis=1)
+    >>> walks = bas(sphere, [(-5, 5)] * 3, budget=400, rng=1)
+    >>> stays = bas(sphere, [(-5, 5)] * 3, budget=400, rng=1, greedy=True, decay=None)
+    >>> stays.value < walks.value < 1.0
+    True
     """
     rng = checks.generator("rng", rng)
     checks.flag("as_printed", as_printed)

@@ -50,6 +50,8 @@ def pso(
 ) -> Result:
     """Minimise a function with a particle swarm.
 
+    v ← ω v + c1 r1 (p_best − x) + c2 r2 (g_best − x), x ← x + v, with r1 and r2 drawn from 0 to 1 for each coordinate.
+
     Parameters
     ----------
     f : callable
@@ -79,12 +81,38 @@ def pso(
     Returns
     -------
     Result
+        `best` and `value`, and how the search went.
 
     Raises
     ------
     ValueError
-        If bounds are reversed or not finite, the budget is below one swarm, a start lies outside of the bounds, or
-        another argument is out of its range.
+        If `bounds` haven't shape (D, 2), are reversed or not finite. If `budget` is below `swarm`, or `swarm` below 1.
+        If `inertia` is not two finite numbers. If `c1` or `c2` is negative or not finite. If `v_max` is not above 0. If
+        `start` lies outside of the bounds or has more than `swarm` rows. If `target` is not finite. If `rng` is no
+        generator and no seed. If `f` doesn't return one value per point.
+
+    See Also
+    --------
+    bas : One beetle instead of a swarm.
+    pso_bas : A swarm whose particles have antennae.
+    uavlab.planners.waypoint_swarm : Moves the waypoints of a route by one of them.
+
+    References
+    ----------
+    - Kennedy and Eberhart, Particle swarm optimization, 1995.
+    - Shi and Eberhart, A modified particle swarm optimizer, 1998: the inertia ω.
+
+    Examples
+    --------
+    >>> from uavlab.optimizers import pso
+    >>> def sphere(points):
+    ...     return (points**2).sum(axis=1)
+    >>> found = pso(sphere, [(-5, 5)] * 3, budget=2000, rng=1)
+    >>> found.best.shape, found.value < 1e-3
+    ((3,), True)
+    >>> printed = pso(sphere, [(-5, 5)] * 3, budget=2000, rng=1, as_printed=True)
+    >>> printed.value > 100 * found.value  # with ω = 1 no particle comes to rest
+    True
     """
     rng = checks.generator("rng", rng)
     settings = swarm_settings(inertia, c1, c2, v_max, as_printed)
@@ -145,11 +173,29 @@ def stability(inertia: npt.ArrayLike, c1: npt.ArrayLike, c2: npt.ArrayLike) -> t
     Returns
     -------
     mean, variance : arrays of their shape
+        Factors per step, at least 0; below 1 it comes to rest.
 
     Raises
     ------
     ValueError
-        If an argument is not finite.
+        If `inertia`, `c1` or `c2` is not finite.
+
+    See Also
+    --------
+    uavlab.optimizers.pso : The swarm that they belong to.
+
+    References
+    ----------
+    Poli, Mean and variance of the sampling distribution of particle swarm optimizers during stagnation, 2009.
+
+    Examples
+    --------
+    >>> from uavlab.optimizers.particle_swarm import stability
+    >>> mean, variance = stability(inertia=[0.4, 0.7, 1.0], c1=1.5, c2=2.0)
+    >>> mean.round(2)  # at ω = 1 the mean only just does not come to rest
+    array([0.63, 0.84, 1.  ])
+    >>> variance.round(2)  # at ω = 0.7 the mean comes to rest, the spread does not
+    array([0.77, 1.01, 1.3 ])
     """
     for name, value in (("inertia", inertia), ("c1", c1), ("c2", c2)):
         checks.finite(name, value)

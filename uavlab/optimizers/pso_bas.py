@@ -50,6 +50,8 @@ def pso_bas(
     In each iteration every particle first probes with its antennae, greedily: it goes to the better tip if that is
     better. Then the swarm flies on (Eq. 16).
 
+    x ← x ± d b, whichever tip is better and if it is better than x, with a random direction b; then as `pso`.
+
     Parameters
     ----------
     f, bounds, budget, rng, swarm, inertia, c1, c2, v_max, start, target
@@ -72,12 +74,28 @@ def pso_bas(
     Returns
     -------
     Result
+        `best` and `value`, and how the search went.
 
     Raises
     ------
     ValueError
-        If bounds are reversed or not finite, the budget is below one swarm, a start lies outside of the bounds, or
-        another argument is out of its range.
+        If `antennae` is unknown. If `antenna` is not above 0. If `decay` is not above 0 and at most 1. If `probes` is
+        below 1. If `block` doesn't divide the coordinates. If `f`, `bounds`, `budget`, `rng`, `swarm`, `inertia`, `c1`,
+        `c2`, `v_max`, `start` or `target` is out of its range, see `pso`.
+
+    See Also
+    --------
+    pso : The swarm without antennae.
+    bas : The antennae without a swarm.
+
+    Examples
+    --------
+    >>> from uavlab.optimizers import pso, pso_bas
+    >>> def valley(points):  # Rosenbrock's, curved and flat at the bottom
+    ...     return 100 * (points[:, 1] - points[:, 0] ** 2) ** 2 + (1 - points[:, 0]) ** 2
+    >>> found = pso_bas(valley, [(-2, 2)] * 2, budget=2000, rng=1)
+    >>> found.best.round(1), found.value < 1e-3
+    (array([1., 1.]), True)
     """
     rng = checks.generator("rng", rng)
     settings = swarm_settings(inertia, c1, c2, v_max, as_printed)

@@ -32,6 +32,21 @@ class Result:
         How often f returned NaN; it counted as worst.
     swarm : (N, D) array
         The best of each particle, best first; for a beetle that walks, where it ended.
+
+    See Also
+    --------
+    pso, bas, pso_bas : Return it.
+
+    Examples
+    --------
+    >>> from uavlab.optimizers import pso
+    >>> def sphere(points):
+    ...     return (points**2).sum(axis=1)
+    >>> found = pso(sphere, [(-5, 5)] * 3, budget=100, rng=1)
+    >>> found.iterations  # evaluations made: 20 particles at a time
+    array([ 20,  40,  60,  80, 100])
+    >>> bool(found.history[-1] == found.value)
+    True
     """
 
     best: np.ndarray

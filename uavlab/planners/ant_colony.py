@@ -129,7 +129,33 @@ def ant_colony(
     Raises
     ------
     ValueError
-        If start or goal can't be flown from or to, or an argument is out of its range.
+        If `risk_map`, `start`, `goal`, `risk_weight`, `length_weight`, `threat_weight`, `max_turn`, `max_pitch`,
+        `max_length`, `min_clearance`, `min_height` or `max_height` is what `least_risk` refuses. If `rng` is no
+        generator and no seed. If `budget` is below one generation for each split and one more. If `ants` is below 1, or
+        `splits` below 0. If `alpha`, `beta`, `gamma` or `min_pheromone` is negative or not finite. If `evaporation` is
+        not between 0 and 1. If `deposit`, `initial_pheromone` or `demand` is not above 0. If `min_pheromone`,
+        `initial_pheromone` and `max_pheromone` are not in order.
+
+    See Also
+    --------
+    least_risk : The least cost there is.
+    compare_planners : Many runs on many maps.
+
+    References
+    ----------
+    - Dorigo, Maniezzo and Colorni, Ant system: optimization by a colony of cooperating agents, 1996.
+    - Stützle and Hoos, MAX-MIN ant system, 2000: limits of the pheromone.
+
+    Examples
+    --------
+    >>> from uavlab.planners import ant_colony, least_risk, optimality_gap
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> campus = reference_campus()
+    >>> exact = least_risk(campus, *CAMPUS_FLIGHT)
+    >>> ours = ant_colony(campus, *CAMPUS_FLIGHT, rng=1, budget=1000)
+    >>> printed = ant_colony(campus, *CAMPUS_FLIGHT, rng=1, budget=1000, as_printed=True)
+    >>> 0 <= optimality_gap(ours, exact) < optimality_gap(printed, exact)
+    True
     """
     began = time.perf_counter()
     rng = checks.generator("rng", rng)

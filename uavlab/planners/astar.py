@@ -85,7 +85,32 @@ def astar(
     Raises
     ------
     ValueError
-        If start or goal can't be flown from or to, both lie in one voxel, or an argument is out of its range.
+        If `city` is no City. If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle or a
+        no-fly zone, nearer to an obstacle than `min_clearance`, or above `max_height`. If both lie in one voxel. If
+        `price` hasn't the city's shape, is negative or not finite. If `heuristic` is unknown. If `min_clearance` or
+        `min_height` is negative or not finite. If `max_height` is not above `min_height`. If `as_printed` comes without
+        a `price`.
+
+    See Also
+    --------
+    theta_star : Shorter, at any angle.
+    penalty_zone : A price that keeps it off buildings.
+    shortcut : Straightens the route afterwards.
+
+    References
+    ----------
+    Hart, Nilsson and Raphael, A formal basis for the heuristic determination of minimum cost paths, 1968.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar
+    >>> city = table1_city()
+    >>> astar(city, (5, 5, 30), (95, 95, 30))
+    <Route by A*: 146.0 m, 123 waypoints>
+    >>> safe = astar(city, (5, 5, 30), (95, 95, 30), min_clearance=3.5)
+    >>> safe, round(safe.clearance(city), 2)
+    (<Route by A*: 151.9 m, 133 waypoints>, 3.5)
     """
     began = time.perf_counter()
     checks.one_of("heuristic", heuristic, HEURISTICS)
@@ -163,7 +188,7 @@ def no_way(city: City, source: int, target: int, reach: int) -> Route:
 
 
 def penalty_zone(city: City, safe_distance: npt.ArrayLike, *, penalty: npt.ArrayLike, zone: str = "ball") -> np.ndarray:
-    """Price per metre 1 + ω·O_risk: 1 in the open, more near obstacles (REPARE Eq. 12).
+    """Price per metre 1 + ω·O_risk: 1 far from obstacles, more near them (REPARE Eq. 12).
 
     Parameters
     ----------
@@ -180,12 +205,29 @@ def penalty_zone(city: City, safe_distance: npt.ArrayLike, *, penalty: npt.Array
     Returns
     -------
     (nx, ny, nz) float array
-        For `astar(..., price=...)` and `shortcut(..., price=...)`.
+        At least 1; for `astar(..., price=...)` and `shortcut(..., price=...)`.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If `safe_distance` is not finite and above 0, `penalty` not finite and at least 0, or one of them neither one
+        number nor of the city's shape. If `zone` is unknown.
+
+    See Also
+    --------
+    repare_price : With a ω that follows the forces.
+    hazard_price : Falls smoothly with the distance.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar, penalty_zone
+    >>> city = table1_city()
+    >>> zone = penalty_zone(city, 3.5, penalty=2.0)
+    >>> float(zone.min()), float(zone.max())
+    (1.0, 3.0)
+    >>> astar(city, (5, 5, 30), (95, 95, 30), price=zone)  # 4.7 m longer than without
+    <Route by A*: 150.7 m, 131 waypoints>
     """
     distance, weight = checks.numbers("safe_distance", safe_distance), checks.numbers("penalty", penalty)
     checks.positive("safe_distance", distance)

@@ -43,11 +43,27 @@ def optimality_gap(route: Route, exact: Route) -> float:
     Returns
     -------
     float
+        0 for the optimum, 0.1 for a tenth more.
 
     Raises
     ------
     ValueError
-        If the exact route doesn't arrive, or a cost is not a number.
+        If `exact` doesn't arrive, or its cost is not finite and above 0. If `route` arrives and its cost is NaN.
+
+    See Also
+    --------
+    least_risk : Gives the optimum.
+    compare_planners : Gaps of many runs.
+
+    Examples
+    --------
+    >>> from uavlab.planners import optimality_gap
+    >>> from uavlab.route import Route
+    >>> exact = Route([(0, 0, 30), (40, 0, 30)], cost=2.0)
+    >>> round(optimality_gap(Route([(0, 0, 30), (0, 30, 30), (40, 0, 30)], cost=2.5), exact), 2)
+    0.25
+    >>> optimality_gap(Route.none("ants", "none arrived"), exact)
+    inf
     """
     checks.instance("route", route, Route)
     checks.instance("exact", exact, Route)
@@ -82,6 +98,20 @@ class Comparison:
         The optima.
     refinement : float
         Share of the budget that refined each route; 0 where none was.
+
+    See Also
+    --------
+    compare_planners : Makes one.
+
+    Examples
+    --------
+    >>> from functools import partial
+    >>> from uavlab.planners import ant_colony, compare_planners
+    >>> from uavlab.risk import random_campus
+    >>> planners = {"ants": ant_colony, "printed": partial(ant_colony, as_printed=True)}
+    >>> runs = compare_planners(planners, random_campus(1), seeds=range(5), budget=200, progress=False)
+    >>> runs.planners, runs.gaps.shape, runs.histories.shape
+    (['ants', 'printed'], (2, 1, 5), (2, 1, 5, 200))
     """
 
     planners: list[str]
@@ -97,6 +127,25 @@ class Comparison:
 
         Its corner says whether the routes are refined, all alike. The interval is a bootstrap over the maps: runs on
         the same map are not independent.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns "median", "low", "high", "90 %" and "failed" [%], and "seconds", the median.
+
+        See Also
+        --------
+        uavlab.statistics.over_maps : The interval.
+
+        Examples
+        --------
+        >>> from functools import partial
+        >>> from uavlab.planners import ant_colony, compare_planners
+        >>> from uavlab.risk import random_campus
+        >>> planners = {"ants": ant_colony, "printed": partial(ant_colony, as_printed=True)}
+        >>> runs = compare_planners(planners, random_campus(1), seeds=range(5), budget=200, progress=False)
+        >>> runs.table().columns.tolist()
+        ['median', 'low', 'high', '90 %', 'failed', 'seconds']
         """
         import pandas
 
@@ -120,7 +169,37 @@ class Comparison:
     def wins(self, planner: str, other: str) -> tuple[float, float, float]:
         """Share of runs (map, seed) in which a planner's gap is less than another's, and its 95 % interval.
 
-        Ties count half. The interval is `share_over_maps`.
+        Ties count half.
+
+        Parameters
+        ----------
+        planner, other : str
+            Of `planners`.
+
+        Returns
+        -------
+        share, low, high : float
+            The interval is `share_over_maps`.
+
+        Raises
+        ------
+        ValueError
+            If `planner` or `other` is not one of `planners`.
+
+        See Also
+        --------
+        uavlab.statistics.share_over_maps : The interval.
+
+        Examples
+        --------
+        >>> from functools import partial
+        >>> from uavlab.planners import ant_colony, compare_planners
+        >>> from uavlab.risk import random_campus
+        >>> planners = {"ants": ant_colony, "printed": partial(ant_colony, as_printed=True)}
+        >>> runs = compare_planners(planners, random_campus(1), seeds=range(5), budget=200, progress=False)
+        >>> share, low, high = runs.wins("ants", "printed")
+        >>> f"{share:.0%}, from {low:.1%} to {high:.0%}"  # all runs, but one map says little of others
+        '100%, from 2.5% to 100%'
         """
         for name, value in (("planner", planner), ("other", other)):
             if value not in self.planners:
@@ -130,9 +209,39 @@ class Comparison:
         return float(won.mean()), *share_over_maps(won)
 
     def converged(self, within: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
-        """When each run came to within a share of its final cost: evaluations and iterations, (P, M, S) each.
+        """When each run came to within a share of its final cost.
 
         A run that didn't arrive never did: all its evaluations. What comes after the last iteration counts as one more.
+
+        Parameters
+        ----------
+        within : float
+            Between 0 and 1; 0.01 is 1 %.
+
+        Returns
+        -------
+        evaluations, iterations : (P, M, S) int arrays
+            How many of each had been made by then.
+
+        Raises
+        ------
+        ValueError
+            If `within` is not between 0 and 1.
+
+        See Also
+        --------
+        uavlab.plot.convergence : Draws the histories.
+
+        Examples
+        --------
+        >>> from functools import partial
+        >>> from uavlab.planners import ant_colony, compare_planners
+        >>> from uavlab.risk import random_campus
+        >>> planners = {"ants": ant_colony, "printed": partial(ant_colony, as_printed=True)}
+        >>> runs = compare_planners(planners, random_campus(1), seeds=range(5), budget=200, progress=False)
+        >>> evaluations, iterations = runs.converged(within=0.01)
+        >>> bool((evaluations <= 200).all()), bool((iterations <= 20).all())  # ten ants an iteration
+        (True, True)
         """
         checks.number("within", within)
         checks.share("within", within)
@@ -183,8 +292,25 @@ def compare_planners(
     Raises
     ------
     ValueError
-        If there are no planners, maps or seeds, a seed is repeated, a map has no route at all, a planner takes another
-        number of evaluations than the budget, or only some refine what they found.
+        If `planners`, `maps` or `seeds` is empty. If one of `seeds` is repeated. If one of `maps` has no route from
+        `start` to `goal`. If `refinement` is not from 0 to below 1. If one of `planners` takes another number of
+        evaluations than `budget`, or only some of them refine what they found. Also what the planners raise.
+
+    See Also
+    --------
+    optimality_gap : Of one run.
+    uavlab.sweep.sweep : Runs them, on many cores if asked.
+    uavlab.plot.convergence : Draws it.
+
+    Examples
+    --------
+    >>> from functools import partial
+    >>> from uavlab.planners import ant_colony, compare_planners
+    >>> from uavlab.risk import random_campus
+    >>> planners = {"ants": ant_colony, "printed": partial(ant_colony, as_printed=True)}
+    >>> runs = compare_planners(planners, random_campus(1), seeds=range(5), budget=200, progress=False)
+    >>> bool((runs.gaps[0] < runs.gaps[1]).all())  # ants that see the risk always find less of it
+    True
     """
     seeds, maps = list(seeds), [maps] if isinstance(maps, RiskMap) else list(maps)
     if not planners or not maps or not seeds:

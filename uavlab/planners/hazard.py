@@ -70,7 +70,27 @@ def hazard_price(
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If `sigma`, `speed` or `natural_frequency` is not finite and above 0. If `uav_diameter` or `crash_price` is
+        negative or not finite. If `mean_offset` is not two or three finite numbers.
+
+    See Also
+    --------
+    hazard_astar : Plans with it.
+    penalty_zone : REPARE's, with an edge.
+    uavlab.offsets.crossing_rate : ν.
+
+    References
+    ----------
+    Rice, Mathematical analysis of random noise, 1944 and 1945.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import hazard_price
+    >>> city = table1_city()
+    >>> price = hazard_price(city, sigma=1.0)
+    >>> price[[9, 8, 7, 6], 30, 30].round(1)  # 0.5, 1.5, 2.5 and 3.5 m from a wall
+    array([96.5, 58.9, 13.9,  2.1])
     """
     for name, value in (("speed", speed), ("sigma", sigma), ("natural_frequency", natural_frequency)):
         checks.positive_number(name, value)
@@ -107,6 +127,8 @@ def hazard_astar(
 ) -> Route:
     """The route of least length plus hazard, over 26 neighbours, then by straight lines at the same price.
 
+    cost = ∫ (1 + λ·ν/v) ds, see `hazard_price`.
+
     Parameters
     ----------
     city : City
@@ -131,7 +153,28 @@ def hazard_astar(
     Raises
     ------
     ValueError
-        If start or goal can't be flown from or to, or an argument is out of its range.
+        If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle or a no-fly zone, so near to
+        an obstacle that the body touches it, or above `max_height`. If both lie in one voxel. If `sigma`, `speed` or
+        `natural_frequency` is not above 0. If `uav_diameter` or `crash_price` is negative. If `mean_offset` is not two
+        or three finite numbers. If `min_height` is negative or not finite. If `max_height` is not above `min_height`.
+
+    See Also
+    --------
+    hazard_price : The price alone.
+    repare : The paper's, with a zone.
+    uavlab.flight.crash_rate : Of flights on a route.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import hazard_astar
+    >>> city = table1_city()
+    >>> calm = hazard_astar(city, (5, 5, 30), (95, 95, 30), sigma=0.3)
+    >>> rough = hazard_astar(city, (5, 5, 30), (95, 95, 30), sigma=1.5)
+    >>> calm, round(calm.clearance(city), 1)
+    (<Route by hazard A*: 137.2 m, 6 waypoints>, 1.4)
+    >>> rough, round(rough.clearance(city), 1)
+    (<Route by hazard A*: 146.4 m, 11 waypoints>, 6.3)
     """
     began = time.perf_counter()
     price = hazard_price(

@@ -69,7 +69,25 @@ def least_energy(
     Raises
     ------
     ValueError
-        If start or goal can't be flown from or to, both lie in one voxel, or an argument is out of its range.
+        If `city`, `start`, `goal`, `min_clearance`, `min_height` or `max_height` is what `astar` refuses. If `uav` is
+        no UAV. If `disturbance` is neither Wind nor Weather. If `speed` is not above 0.
+
+    See Also
+    --------
+    uavlab.power.energy_per_metre : e.
+    astar : Of least length.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import least_energy
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> from uavlab.weather import Wind
+    >>> city, wind = table1_city(), Wind(mean=(10, 0), gusts="none")
+    >>> with_it = least_energy(city, (5, 5, 30), (95, 5, 30), LIGHT_QUADROTOR, wind)
+    >>> against = least_energy(city, (95, 5, 30), (5, 5, 30), LIGHT_QUADROTOR, wind)
+    >>> f"{with_it.cost / 1000:.1f} kJ with the wind, {against.cost / 1000:.1f} kJ against it"
+    '2.9 kJ with the wind, 5.4 kJ against it'
     """
     began = time.perf_counter()
     checks.instance("uav", uav, UAV)

@@ -90,7 +90,30 @@ def least_risk(
     Raises
     ------
     ValueError
-        If start or goal can't be flown from or to, or an argument is out of its range.
+        If `risk_map` is no RiskMap. If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle
+        or a no-fly zone, nearer to an obstacle than `min_clearance`, lower above roofs than the map's `safe_height`, or
+        above `max_height`. If both lie in one voxel. If `risk_weight`, `length_weight` or `threat_weight` is negative
+        or not finite, or all are 0. If `max_turn` is not from 0 to π, or `max_pitch` not from 0 to π/2. If
+        `min_clearance` or `min_height` is negative or not finite. If `max_height` is not above `min_height`. If
+        `max_length` is not above 0. If `heuristic` is unknown.
+
+    See Also
+    --------
+    pareto_front : For each length that one is ready to fly.
+    ant_colony : Without a guarantee, as the papers do.
+    refine : Makes it a better curve, off the grid.
+
+    Examples
+    --------
+    >>> from uavlab.planners import least_risk
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> campus = reference_campus()
+    >>> safest = least_risk(campus, *CAMPUS_FLIGHT)
+    >>> shortest = least_risk(campus, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0)
+    >>> safest, shortest
+    (<Route by least risk: 189.0 m, 33 waypoints>, <Route by shortest: 140.9 m, 21 waypoints>)
+    >>> round(campus.integral(shortest) / campus.integral(safest), 1)  # times the risk
+    11.2
     """
     began = time.perf_counter()
     if heuristic not in ("backward", "zero"):
@@ -135,6 +158,8 @@ def pareto_front(
 ) -> list[Route]:
     """The least risk for each length that one is ready to fly, exactly (ε-constraint method).
 
+    min ∫ r ds/dx subject to L ≤ ε, for one ε after another.
+
     Parameters
     ----------
     risk_map, start, goal, max_turn, max_pitch, min_clearance, min_height, max_height, drift
@@ -153,7 +178,27 @@ def pareto_front(
     Raises
     ------
     ValueError
-        If start or goal can't be flown from or to, or an argument is out of its range.
+        If `risk_map`, `start`, `goal`, `max_turn`, `max_pitch`, `min_clearance`, `min_height` or `max_height` is what
+        `least_risk` refuses. If `lengths` is empty, below 2 as a count, or a length is not finite and above 0.
+
+    See Also
+    --------
+    least_risk : One of them, at one length.
+    uavlab.plot.front : Draws it.
+
+    References
+    ----------
+    Haimes, Lasdon and Wismer, On a bicriterion formulation of the problems of integrated system identification and
+    system optimization, 1971: the ε-constraint method.
+
+    Examples
+    --------
+    >>> from uavlab.planners import pareto_front
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> campus = reference_campus()
+    >>> front = pareto_front(campus, *CAMPUS_FLIGHT, lengths=4)
+    >>> [(round(route.length), round(1e6 * route.cost, 1)) for route in front]  # m, and 10⁻⁶/h
+    [(141, 41.9), (156, 6.6), (172, 5.6), (189, 5.5)]
     """
     began = time.perf_counter()
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)

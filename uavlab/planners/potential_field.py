@@ -103,7 +103,30 @@ def potential_field(
     Raises
     ------
     ValueError
-        If start or goal can't be flown from or to, or an argument is out of its range.
+        If `city` is no City. If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle or a
+        no-fly zone, or above `max_height`. If both lie in one voxel. If `attraction`, `obstacles` or `moves` is
+        unknown. If `pull`, `push`, `reach` or `step` is not above 0. If `max_steps` is below 1. If `min_height` is
+        negative or not finite. If `max_height` is not above `min_height`.
+
+    See Also
+    --------
+    potential_forces : The field, for drawing.
+    repulsion : Size of one push.
+    repare : A* whose price follows such forces, so that nothing traps it.
+
+    References
+    ----------
+    Khatib, Real-time obstacle avoidance for manipulators and mobile robots, 1986.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import potential_field
+    >>> city = table1_city()
+    >>> potential_field(city, (5, 5, 30), (5, 95, 30))
+    <Route by potential field: 90.0 m, 91 waypoints>
+    >>> potential_field(city, (5, 5, 30), (95, 95, 30)).reason
+    'stuck in a local minimum at (67.5, 57.5, 30.5), 47.2 m from the goal: it trembles there without getting on'
     """
     began = time.perf_counter()
     checks.instance("city", city, City)
@@ -159,15 +182,46 @@ def potential_forces(
     push: float = 5.0,
     reach: float = 5.0,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The field at points (..., 3) [m]: attraction (..., 3), repulsion (..., 3) and potential (...), for drawing.
+    """The field at points, for drawing: attraction, repulsion and potential.
 
-    Arguments as for `potential_field`. The forces are minus the gradient of the potential, but within 5 cm of an
-    obstacle and inside, where the potential is cut off.
+    F = −∇U, with U_tra = k d ("conic") or k d²/2 ("quadratic"), d the distance to the goal, and
+    U_rep = Σ k_rep (1/D − 1/R)²/2. It doesn't hold inside of an obstacle and up to 5 cm from it: there U is cut off.
+
+    Parameters
+    ----------
+    city : City
+    points : (..., 3) array
+        Where to look [m].
+    goal : (3,) array
+        What pulls [m].
+    attraction, obstacles, pull, push, reach
+        As for `potential_field`.
+
+    Returns
+    -------
+    attraction, repulsion : (..., 3) arrays
+        F_tra and F_rep.
+    potential : (...) array
+        U_tra + U_rep.
 
     Raises
     ------
     ValueError
-        If points or goal haven't three finite coordinates, or an argument is out of its range.
+        If `points` or `goal` haven't three finite coordinates. If `attraction` or `obstacles` is unknown. If `pull`,
+        `push` or `reach` is not above 0.
+
+    See Also
+    --------
+    potential_field : Follows the forces.
+    repulsion : Size of one push.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import potential_forces
+    >>> attraction, repulsion, potential = potential_forces(table1_city(), (8, 30.5, 30.5), (95, 30.5, 30.5))
+    >>> f"pull {attraction[0]:.2f}, push {repulsion[0]:.2f}"  # eastwards; the wall is 2 m to the east
+    'pull 1.00, push -6.87'
     """
     at, aim = checks.vectors(points=points, goal=goal)
     if at.shape[-1] != 3 or aim.shape != (3,):
@@ -204,10 +258,27 @@ def repulsion(distance: npt.ArrayLike, push: float, reach: float, *, safe_distan
         D_min [m], to which the printed form reaches instead of R. If D_min < R the push jumps there; if D_min > R it
         is negative in between, and the obstacle attracts.
 
+    Returns
+    -------
+    float or array
+        F_rep, the shape of `distance`; 0 beyond the range.
+
     Raises
     ------
     ValueError
-        If an argument is not above 0.
+        If `distance`, `push`, `reach` or `safe_distance` is not finite and above 0.
+
+    See Also
+    --------
+    potential_forces : Of all obstacles, with directions.
+
+    Examples
+    --------
+    >>> from uavlab.planners import repulsion
+    >>> repulsion([1, 2, 4, 6], push=5.0, reach=5.0).round(3)
+    array([4.   , 0.375, 0.016, 0.   ])
+    >>> repulsion([4, 6], push=5.0, reach=5.0, safe_distance=8.0).round(3)  # as printed: at 6 m it attracts
+    array([ 0.016, -0.005])
     """
     for name, value in (("distance", distance), ("push", push), ("reach", reach)):
         checks.positive(name, value)

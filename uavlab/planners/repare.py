@@ -49,6 +49,10 @@ class Conditions(NamedTuple):
     load_ratio: float
     """Weight over thrust, λ."""
 
+    def __repr__(self) -> str:
+        grounded = f", grounded: {self.grounded}" if self.grounded else ""
+        return f"<Conditions {self.name}: D_min {self.safe_distance:g} m{grounded}>"
+
 
 def repare(
     city: City,
@@ -117,8 +121,28 @@ def repare(
     Raises
     ------
     ValueError
-        If a class is unknown, D_min reaches over start or goal, the disturbance is not finite, or another argument is
-        out of its range.
+        If `city` is no City. If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle or a
+        no-fly zone, nearer to an obstacle than D_min, or above `max_height`. If both lie in one voxel. If `load` is no
+        class, negative or too heavy to lift. If `disturbance` is no class, Wind or Weather. If `reading` or `zone` is
+        unknown. If `mean_offset` is not two or three finite numbers. If `penalty`, `force_weight` or `load_weight` is
+        negative or not finite. If `interval` is not above 0. If `min_height` is negative or not finite. If `max_height`
+        is not above `min_height`.
+
+    See Also
+    --------
+    repare_price : The price that it plans with.
+    flight_conditions : What load and disturbance mean.
+    hazard_astar : With a price that falls smoothly.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import repare
+    >>> city = table1_city()
+    >>> repare(city, (5, 5, 30), (95, 95, 30), load="light", disturbance="mild")
+    <Route by REPARE: 150.7 m, 131 waypoints>
+    >>> repare(city, (5, 5, 30), (95, 95, 30), load="heavy", disturbance="heavy").reason
+    'grounded: heavy load in heavy disturbance (REPARE Table 3)'
     """
     began = time.perf_counter()
     checks.positive_number("interval", interval)
@@ -249,6 +273,8 @@ def flight_conditions(
 ) -> Conditions:
     """What a load and a disturbance mean for planning.
 
+    push = F_gust/√(T² − (m g)²), λ = m g/T, with the payload in m.
+
     Parameters
     ----------
     load, disturbance, uav, reading
@@ -259,11 +285,29 @@ def flight_conditions(
     Returns
     -------
     Conditions
+        `name`, `grounded`, `safe_distance` [m], `wind`, `push` and `load_ratio`.
 
     Raises
     ------
     ValueError
-        If a class is unknown, the load can't be lifted, or the disturbance is no class, Wind or Weather.
+        If `load` is no class, negative or too heavy to lift. If `disturbance` is no class, Wind or Weather. If
+        `reading` is unknown.
+
+    See Also
+    --------
+    repare_price : Takes them.
+    uavlab.resilience.safe_distance : D_min alone.
+
+    Examples
+    --------
+    >>> from uavlab.planners import flight_conditions
+    >>> from uavlab.weather import Wind
+    >>> flight_conditions("light", "mild")
+    <Conditions light load, mild disturbance: D_min 3.5 m>
+    >>> flight_conditions("light", Wind(mean=(5, 0)))
+    <Conditions light load, wind 5.0 m/s (mild disturbance): D_min 3.5 m>
+    >>> flight_conditions("heavy", "heavy").grounded
+    'heavy load in heavy disturbance (REPARE Table 3)'
     """
     loaded = uav.loaded(payload_of(load))
     kind, speed = kind_and_speed(disturbance, f"disturbance after {clock:.1f} s" if clock else "disturbance")
@@ -324,7 +368,22 @@ def repare_price(
     Raises
     ------
     ValueError
-        If a weight is negative or not finite, or another argument is not as above.
+        If `penalty`, `force_weight` or `load_weight` is negative or not finite. If `mean_offset` is not two or three
+        finite numbers. If `zone` is unknown.
+
+    See Also
+    --------
+    repare : Plans with it.
+    penalty_zone : With a fixed ω.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import flight_conditions, repare_price
+    >>> city = table1_city()
+    >>> price = repare_price(city, flight_conditions("light", "mild"))
+    >>> price[[9, 8, 7, 6], 30, 30].round(1)  # 0.5, 1.5, 2.5 and 3.5 m from a wall
+    array([151.6,   8.2,   5. ,   1. ])
     """
     named = {"penalty": penalty, "force_weight": force_weight, "load_weight": load_weight}
     weights = tuple(checks.not_negative_number(name, weight) for name, weight in named.items())

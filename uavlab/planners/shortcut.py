@@ -42,6 +42,8 @@ def shortcut(
 
     With a price and more than 128 waypoints it is the cheapest of those found in several rounds, see `LOOKBACK`.
 
+    best[j] = min over i < j of best[i] + ∫ price ds from i to j, over the lines that keep what is asked for.
+
     Parameters
     ----------
     route : Route
@@ -66,8 +68,25 @@ def shortcut(
     Raises
     ------
     ValueError
-        If the route itself doesn't keep what is asked for, the message says between which waypoints; or it was planned
-        at a price and none is given.
+        If `route` or `city` is of another kind. If `route` itself doesn't keep `min_clearance`, `min_height`,
+        `max_height` or `safe_height` (the message says between which waypoints). If it was planned at a price and
+        `price` is not given. If `price` hasn't the city's shape, is negative or not finite. If `min_clearance`,
+        `min_height` or `safe_height` is negative. If `max_height` is not above `min_height`.
+
+    See Also
+    --------
+    theta_star : Looks for straight lines while it plans.
+    uavlab.spline.smooth : Makes the route a curve.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar, penalty_zone, shortcut
+    >>> city = table1_city()
+    >>> zone = penalty_zone(city, 3.5, penalty=2.0)
+    >>> route = astar(city, (5, 5, 30), (95, 95, 30), price=zone)
+    >>> route, shortcut(route, city, price=zone)
+    (<Route by A*: 150.7 m, 131 waypoints>, <Route by A* + shortcut: 140.3 m, 6 waypoints>)
     """
     checks.instance("route", route, Route)
     checks.instance("city", city, City)

@@ -94,6 +94,8 @@ def waypoint_swarm(
 
     A curve that flies where it may not, turns or climbs too much is worse than any that doesn't, the worse the more.
 
+    cost = w_r·∫ r ds/dx + w_l·L + w_s·∫ threat ds/dx along the curve, as for `least_risk`.
+
     Parameters
     ----------
     risk_map, start, goal, risk_weight, length_weight, threat_weight, max_pitch
@@ -141,8 +143,28 @@ def waypoint_swarm(
     Raises
     ------
     ValueError
-        If start or goal can't be flown from or to, the budget doesn't cover arcs, one swarm and refinement, the initial
-        route doesn't lead from start to goal, or an argument is out of its range.
+        If `risk_map`, `start`, `goal`, `risk_weight`, `length_weight`, `threat_weight`, `max_turn`, `max_pitch`,
+        `max_length`, `min_clearance`, `min_height` or `max_height` is what `least_risk` refuses. If `rng` is no
+        generator and no seed. If `budget` doesn't cover arcs, one swarm and refinement. If `optimizer`, `encoding` or
+        `curve` is unknown. If `waypoints` is below 1, or `arcs` below 0. If `initial` doesn't lead from start to goal.
+        If `refinement` is not from 0 to below 1.
+
+    See Also
+    --------
+    refine : The last part alone, for any route.
+    least_risk : The least cost on the grid.
+    uavlab.optimizers.pso_bas : What moves the waypoints.
+
+    Examples
+    --------
+    >>> from uavlab.planners import least_risk, optimality_gap, waypoint_swarm
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> campus = reference_campus()
+    >>> route = waypoint_swarm(campus, *CAMPUS_FLIGHT, rng=1, budget=2000)
+    >>> route.reached, len(route.info["control"])
+    (True, 17)
+    >>> abs(optimality_gap(route, least_risk(campus, *CAMPUS_FLIGHT))) < 0.2
+    True
     """
     began = time.perf_counter()
     rng = checks.generator("rng", rng)
@@ -260,7 +282,24 @@ def refine(
     Raises
     ------
     ValueError
-        If the route doesn't arrive, its ends can't be flown from or to, or an argument is out of its range.
+        If `route` doesn't arrive. If its ends, `risk_weight`, `length_weight`, `threat_weight`, `max_turn`,
+        `max_pitch`, `max_length`, `min_clearance`, `min_height` or `max_height` are what `least_risk` refuses. If `rng`
+        is no generator and no seed. If `budget` is below 4.
+
+    See Also
+    --------
+    waypoint_swarm : Finds a route first.
+    least_risk : The least cost on the grid, a good one to begin with.
+
+    Examples
+    --------
+    >>> from uavlab.planners import least_risk, refine
+    >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+    >>> campus = reference_campus()
+    >>> exact = least_risk(campus, *CAMPUS_FLIGHT)
+    >>> curve = refine(exact, campus, rng=1, budget=400)
+    >>> curve.cost < exact.cost, curve.length < exact.length
+    (True, True)
     """
     began = time.perf_counter()
     rng = checks.generator("rng", rng)

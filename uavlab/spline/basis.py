@@ -41,11 +41,30 @@ def cubic_bspline(
     Returns
     -------
     (..., segments·per_segment + 1, D) array
+        Points, in the unit of the control points; or derivatives there, per segment.
 
     Raises
     ------
     ValueError
-        If there are too few control points, one is not finite, or another argument is out of its range.
+        If `control` has too few points for `ends`, another shape than (..., N, D), or a value that is not finite. If
+        `per_segment` is below 1. If `ends` is unknown. If `derivative` is not 0, 1 or 2.
+
+    See Also
+    --------
+    Curve : The same curve in 3D, with its length, curvature and clearance.
+    bspline : Of any degree.
+    subdivided : The same curve from more control points.
+
+    Examples
+    --------
+    >>> from uavlab.spline import cubic_bspline
+    >>> corner = [(10, 10), (20, 10), (20, 20)]
+    >>> cubic_bspline(corner, per_segment=2).round(2)  # through both ends, past the corner
+    array([[10.  , 10.  ],
+           [14.79, 10.21],
+           [18.33, 11.67],
+           [19.79, 15.21],
+           [20.  , 20.  ]])
     """
     points = checks.numbers("control", control)
     checks.whole("per_segment", per_segment, least=1)
@@ -94,6 +113,9 @@ def with_ends(points: np.ndarray, ends: str) -> np.ndarray:
 def basis_functions(t: npt.ArrayLike, knots: npt.ArrayLike, degree: int = 3, *, as_printed: bool = False) -> np.ndarray:
     """All B-spline basis functions of a degree, by the recursion of Cox and de Boor (PSO-BAS Eqs 23-24).
 
+    B_i,0(t) = 1 where u_i ≤ t < u_i+1, else 0;
+    B_i,p(t) = (t − u_i)/(u_i+p − u_i) B_i,p−1(t) + (u_i+p+1 − t)/(u_i+p+1 − u_i+1) B_i+1,p−1(t).
+
     Parameters
     ----------
     t : (T,) array
@@ -114,7 +136,28 @@ def basis_functions(t: npt.ArrayLike, knots: npt.ArrayLike, degree: int = 3, *, 
     Raises
     ------
     ValueError
-        If the knots fall or are too few, or a parameter lies beyond them.
+        If `knots` fall, are all equal, not finite or fewer than degree + 2. If `t` lies beyond the knots. If `degree`
+        is negative.
+
+    See Also
+    --------
+    bspline : The curve that they weigh the control points for.
+    cubic_bspline : Without the recursion, for even knots.
+
+    References
+    ----------
+    - Cox, The numerical evaluation of B-splines, 1972.
+    - De Boor, On calculating with B-splines, 1972.
+
+    Examples
+    --------
+    >>> from uavlab.spline import basis_functions
+    >>> weights = basis_functions([3.0, 3.5], knots=range(8), degree=3)
+    >>> weights.round(3)
+    array([[0.167, 0.667, 0.167, 0.   ],
+           [0.021, 0.479, 0.479, 0.021]])
+    >>> weights.sum(axis=1).round(3)
+    array([1., 1.])
     """
     t, knots = checks.numbers("t", t), checks.numbers("knots", knots)
     checks.whole("degree", degree, least=0)
@@ -144,6 +187,8 @@ def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.nda
 
     Its knots are even, but for the first and the last, which stand degree + 1 times: it passes through both ends.
 
+    S(t) = Σ B_i,p(t) P_i, with the basis functions of `basis_functions`.
+
     Parameters
     ----------
     control : (N, D) array
@@ -160,7 +205,26 @@ def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.nda
     Raises
     ------
     ValueError
-        If there are too few control points, or a parameter is not from 0 to 1.
+        If `control` has not more than `degree` points, another shape than (N, D), or a value that is not finite. If `t`
+        is not from 0 to 1. If `degree` is below 1.
+
+    See Also
+    --------
+    cubic_bspline : Of degree 3 with even knots.
+    basis_functions : Its weights of the control points.
+
+    Examples
+    --------
+    >>> from uavlab.spline import bspline
+    >>> control = [(10, 10), (20, 30), (30, 10)]
+    >>> bspline(control, [0, 0.5, 1], degree=1).round(1)  # the polyline
+    array([[10., 10.],
+           [20., 30.],
+           [30., 10.]])
+    >>> bspline(control, [0, 0.5, 1], degree=2).round(1)  # half as high
+    array([[10., 10.],
+           [20., 20.],
+           [30., 10.]])
     """
     points = checks.numbers("control", control)
     checks.whole("degree", degree, least=1)
@@ -173,7 +237,38 @@ def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.nda
 
 
 def subdivided(control: np.ndarray) -> np.ndarray:
-    """Control points (2N − 1, D) of the same curve, twice as dense (Lane and Riesenfeld 1980)."""
+    """Control points of the same curve, twice as dense, by Lane and Riesenfeld's rule.
+
+    Q_2i = (P_i−1 + 6 P_i + P_i+1)/8, Q_2i+1 = (P_i + P_i+1)/2; the ends stay.
+
+    Parameters
+    ----------
+    control : (N, D) array
+        Control points of a cubic B-spline with ends="phantom", N ≥ 2.
+
+    Returns
+    -------
+    (2N − 1, D) array
+
+    See Also
+    --------
+    cubic_bspline : The curve.
+    fitted : As many control points as one wants, of a curve near a line of points.
+
+    References
+    ----------
+    Lane and Riesenfeld, A theoretical development for the computer generation and display of piecewise polynomial
+    surfaces, 1980.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.spline import cubic_bspline, subdivided
+    >>> control = [(10, 10), (20, 10), (20, 20)]
+    >>> finer = subdivided(control)
+    >>> np.allclose(cubic_bspline(finer, per_segment=4), cubic_bspline(control, per_segment=8))
+    True
+    """
     control = np.asarray(control, dtype=float)
     finer = np.empty((2 * len(control) - 1, control.shape[1]))
     finer[0::2] = control
@@ -183,7 +278,37 @@ def subdivided(control: np.ndarray) -> np.ndarray:
 
 
 def fitted(points: np.ndarray, count: int) -> np.ndarray:
-    """`count` control points of the B-spline nearest to a line of points (M, D), by least squares; the ends stay."""
+    """Control points of the B-spline nearest to a line of points, by least squares; the ends stay.
+
+    min Σ |S(t_j) − p_j|² over the inner control points, the p_j at even distances along the line.
+
+    Parameters
+    ----------
+    points : (M, D) array
+        Joined by straight lines; M ≥ 2.
+    count : int
+        How many control points, at least 3.
+
+    Returns
+    -------
+    (count, D) array
+        For ends="phantom".
+
+    See Also
+    --------
+    cubic_bspline : The curve.
+    subdivided : The same curve from twice as many control points.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.spline import cubic_bspline, fitted
+    >>> angle = np.linspace(0, np.pi, 50)
+    >>> control = fitted(100 * np.stack([np.cos(angle), np.sin(angle)], axis=1), 9)
+    >>> off = np.linalg.norm(cubic_bspline(control), axis=1) - 100
+    >>> bool(np.abs(off).max() < 2)  # nine points for half a circle of 100 m
+    True
+    """
     points = np.asarray(points, dtype=float)
     wanted = spread(points, 8 * (count - 1) + 1)
     basis = cubic_bspline(np.eye(count), per_segment=8)

@@ -47,7 +47,18 @@ def curvature(velocity: npt.ArrayLike, acceleration: npt.ArrayLike) -> np.ndarra
     Raises
     ------
     ValueError
-        If they are not finite vectors with two or three components.
+        If `velocity` or `acceleration` is not finite, hasn't two or three components, or not as many as the other.
+
+    See Also
+    --------
+    allowed_speed : How fast a turn may be flown.
+    Curve : Measures it all along.
+
+    Examples
+    --------
+    >>> from uavlab.spline import curvature
+    >>> round(float(curvature((0, 5), (-5, 0))), 3)  # on a circle of 5 m, one radian per unit of t
+    0.2
     """
     first, second = checks.vectors(velocity=velocity, acceleration=acceleration)
     return np.linalg.norm(curvature_vector(first, second), axis=-1)
@@ -80,7 +91,20 @@ def allowed_speed(curvature: npt.ArrayLike, bank: float = BANK) -> np.ndarray:
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If `curvature` is negative, or `bank` is not between 0 and π/2.
+
+    See Also
+    --------
+    greatest_speed : Of a whole curve, with thrust, tilt and wind.
+    curvature : From two derivatives.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.spline import allowed_speed
+    >>> radius = np.array([5, 20, 80])
+    >>> allowed_speed(1 / radius).round(1)  # four times the radius, twice the speed
+    array([ 5.3, 10.6, 21.3])
     """
     values = checks.numbers("curvature", curvature)
     checks.refuse(values, values >= 0, "curvature must be at least 0")
@@ -97,7 +121,9 @@ def checked_bank(bank: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A cubic B-spline in space, and what can be measured on it.
+    """A cubic B-spline in 3D, and what can be measured on it.
+
+    S_i(t) = [t³ t² t 1]·M·[P_i … P_i+3]ᵀ/6, 0 ≤ t ≤ 1, see `cubic_bspline`.
 
     Attributes
     ----------
@@ -119,7 +145,24 @@ class Curve:
     Raises
     ------
     ValueError
-        If the control points haven't shape (N, 3), are too few or not finite, or another attribute is out of range.
+        If `control` hasn't shape (N, 3), has fewer than two points or a value that is not finite. If `ends` is unknown.
+        If `step` is not above 0. If `min_clearance`, `min_height` or `safe_height` is negative or not finite. If
+        `max_height` is not above `min_height`.
+
+    See Also
+    --------
+    smooth : Makes one from a route, clear of the buildings.
+    feasibility : Whether a UAV can fly it.
+    cubic_bspline : Its points alone.
+
+    Examples
+    --------
+    >>> from uavlab.spline import Curve
+    >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+    >>> curve  # the corner is cut: the legs are 80 m long
+    <Curve by curve: 69.7 m, 3 control points>
+    >>> round(float(curve.curvature.max()), 3)
+    0.069
     """
 
     control: np.ndarray
@@ -166,7 +209,38 @@ class Curve:
         return np.concatenate([*inner, [float(len(parts))]])
 
     def at(self, parameter: npt.ArrayLike, derivative: int = 0) -> np.ndarray:
-        """Points (..., 3) [m] at parameters from 0 to the number of segments, or derivatives by the parameter."""
+        """Points at parameters, or derivatives by the parameter there.
+
+        Parameters
+        ----------
+        parameter : float or array (...)
+            From 0 to the number of segments, one per segment.
+        derivative : {0, 1, 2}
+            By the parameter.
+
+        Returns
+        -------
+        (..., 3) array
+            [m]; derivatives per segment.
+
+        Raises
+        ------
+        ValueError
+            If `parameter` is below 0 or above the number of segments, or `derivative` is not 0, 1 or 2.
+
+        See Also
+        --------
+        cubic_bspline : At even parameters.
+
+        Examples
+        --------
+        >>> from uavlab.spline import Curve
+        >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+        >>> curve.at([0, 1, 2]).round(1)
+        array([[ 5. ,  5. , 30. ],
+               [34.2, 12.5, 30. ],
+               [40. , 50. , 30. ]])
+        """
         padded = with_ends(self.control, self.ends)
         where = checks.numbers("parameter", parameter)
         checked_derivative(derivative)
@@ -275,19 +349,102 @@ class Curve:
         return np.maximum(*size) * np.diff(self.parameter) ** 2 / 8
 
     def least_distances(self, city: City, at_most: float = np.inf) -> np.ndarray:
-        """A lower bound of the distance to the obstacles between each two of its points, (P − 1,) [m].
+        """A lower bound of the distance to the obstacles between each two of its points.
 
-        That of the straight line, less the sagitta; where the line is farther away than `at_most`, as if it were that.
+        That of the straight line, less the sagitta.
+
+        Parameters
+        ----------
+        city : City
+        at_most : float
+            Where the line is farther away than this [m], this counts instead, and is found sooner.
+
+        Returns
+        -------
+        (P − 1,) array
+            [m], at least 0; infinite in a city without obstacles.
+
+        Raises
+        ------
+        ValueError
+            If `city` is no City, or `at_most` is negative.
+
+        See Also
+        --------
+        Curve.clearance : The least of them.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> from uavlab.spline import Curve
+        >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+        >>> distances = curve.least_distances(table1_city(), at_most=10)
+        >>> len(distances) == len(curve.points) - 1, round(float(distances.max()), 1)
+        (True, 10.0)
         """
         checks.instance("city", city, City)
         straight = city.segment_distance(self.points[:-1], self.points[1:], at_most=at_most)
         return np.maximum(straight - self.sagitta, 0.0)
 
     def clearance(self, city: City) -> float:
-        """A lower bound of its least distance to the obstacles [m], too low by the sagitta, about κ·step²/8."""
+        """A lower bound of its least distance to the obstacles, too low by the sagitta, about κ·step²/8.
+
+        Parameters
+        ----------
+        city : City
+
+        Returns
+        -------
+        float
+            [m]; 0 if it may touch one, infinite in a city without obstacles.
+
+        Raises
+        ------
+        ValueError
+            If `city` is no City.
+
+        See Also
+        --------
+        Curve.least_distances : All along.
+        uavlab.route.Route.clearance : Of straight legs, exactly.
+
+        Examples
+        --------
+        >>> from uavlab.city import table1_city
+        >>> from uavlab.spline import Curve
+        >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+        >>> round(curve.clearance(table1_city()), 1)
+        0.7
+        """
         return float(self.least_distances(city).min())
 
     def route(self, step: float | None = None) -> Route:
-        """The curve as straight lines of at most `step` metres, by default its own; longer ones draw faster."""
+        """The curve as straight lines, with the same promises.
+
+        Parameters
+        ----------
+        step : float, optional
+            At most so long are they [m], above 0; by default the curve's own. Longer ones draw faster.
+
+        Returns
+        -------
+        Route
+
+        Raises
+        ------
+        ValueError
+            If `step` is not above 0.
+
+        See Also
+        --------
+        uavlab.route.as_route : Of a route or a curve.
+
+        Examples
+        --------
+        >>> from uavlab.spline import Curve
+        >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+        >>> curve.route(step=5.0)
+        <Route by curve: 69.7 m, 19 waypoints>
+        """
         points = (self if step is None else replace(self, step=step)).points
         return Route(points, self.planner, **promises_of(self))

@@ -51,6 +51,22 @@ class Limit:
         Where it is worst, distance flown [m].
     place : tuple of float
         And in space [m].
+
+    See Also
+    --------
+    feasibility : Finds them.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.spline import Curve, feasibility
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+    >>> report = feasibility(curve, table1_city(), LIGHT_QUADROTOR, speed=12.0)
+    >>> report["curvature"]
+    <Limit curvature: 0.0686 1/m, at most 0.0393, NOT met>
+    >>> report["clearance"].met
+    True
     """
 
     name: str
@@ -67,6 +83,10 @@ class Limit:
         slack = 1e-9 * abs(self.limit)
         return self.worst >= self.limit - slack if self.at_least else self.worst <= self.limit + slack
 
+    def __repr__(self) -> str:
+        bound = f"at {'least' if self.at_least else 'most'} {self.limit:.3g}"
+        return f"<Limit {self.name}: {self.worst:.3g} {self.unit}, {bound}, {'met' if self.met else 'NOT met'}>"
+
 
 @dataclass(frozen=True, repr=False)
 class Feasibility:
@@ -77,6 +97,23 @@ class Feasibility:
     limits : tuple of Limit
     speed : float
         For which it holds [m/s].
+
+    See Also
+    --------
+    feasibility : Finds it.
+    Limit : One of its limits.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.spline import Curve, feasibility
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+    >>> report = feasibility(curve, table1_city(), LIGHT_QUADROTOR, speed=12.0)
+    >>> report.feasible
+    False
+    >>> [limit.name for limit in report.limits if not limit.met]
+    ['curvature']
     """
 
     limits: tuple[Limit, ...]
@@ -92,7 +129,7 @@ class Feasibility:
         return {limit.name: limit for limit in self.limits}[checks.one_of("name", name, [x.name for x in self.limits])]
 
     def rows(self) -> list[tuple[str, ...]]:
-        """Of its table: limit, worst value, where, verdict."""
+        """Rows of its table, text only: limit, what it asks for, worst value, where, verdict."""
         return [
             (
                 limit.name,
@@ -143,6 +180,8 @@ def feasibility(
 
     Whatever is measured between the curve's points is bounded, not sampled.
 
+    Bank, with the level part of the curvature: κ ≤ g·tan(bank)/v². Thrust: |T| ≤ T_max, see `tilted_thrust`.
+
     Parameters
     ----------
     curve : Curve
@@ -184,7 +223,28 @@ def feasibility(
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If `curve`, `city` or `uav` is of another kind. If `speed` is not above 0. If `wind` is not two or three finite
+        numbers. If `bank` is not between 0 and π/2. If `max_pitch` is not above 0 and at most π/2, or `max_turn` not
+        above 0 and at most π. If `min_clearance`, `min_height` or `safe_height` is negative. If `max_height` is not
+        above `min_height`. If `reading` is unknown.
+
+    See Also
+    --------
+    greatest_speed : The fastest at which bank, thrust, tilt and air speed are in limits.
+    smooth : Makes the curve from a route.
+    tilted_thrust : What the turn and the wind ask for.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.spline import Curve, feasibility
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+    >>> feasibility(curve, table1_city(), LIGHT_QUADROTOR, speed=5.0).feasible
+    True
+    >>> fast = feasibility(curve, table1_city(), LIGHT_QUADROTOR, speed=12.0)
+    >>> fast["curvature"]  # at 12 m/s a bank of 30° holds turns of 25 m radius, not of 15 m
+    <Limit curvature: 0.0686 1/m, at most 0.0393, NOT met>
     """
     checks.instance("curve", curve, Curve)
     checks.instance("uav", uav, UAV)
@@ -339,7 +399,7 @@ def tilted_thrust(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Thrust and tilt that hold a UAV on a curve at a constant speed.
 
-    T = m (v² κ n + g ẑ) − F_drag
+    T = m (v² κ n + g ẑ) − F_drag, and the tilt is the angle between T and ẑ.
 
     Parameters
     ----------
@@ -356,6 +416,26 @@ def tilted_thrust(
         |T| [N] at the curve's points; infinite at a corner.
     tilt : (P,) array
         Angle between T and the vertical [rad].
+
+    Raises
+    ------
+    ValueError
+        If `speed` is not above 0, or `wind` is not two or three finite numbers.
+
+    See Also
+    --------
+    feasibility : Whether the UAV has both.
+    uavlab.weather.wind_drag : F_drag.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from uavlab.spline import Curve, tilted_thrust
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+    >>> thrust, tilt = tilted_thrust(curve, LIGHT_QUADROTOR, speed=6.0)
+    >>> f"{thrust.max():.1f} N, {np.degrees(tilt.max()):.0f}°; weight {LIGHT_QUADROTOR.weight:.1f} N"
+    '15.2 N, 15°; weight 14.7 N'
     """
     checks.positive_number("speed", speed)
     drag = wind_drag(checks.three("wind", wind), speed * curve.tangent, uav.drag_area)
@@ -365,11 +445,49 @@ def tilted_thrust(
 
 
 def greatest_speed(curve: Curve, uav: UAV, wind: npt.ArrayLike = (0.0, 0.0, 0.0), *, bank: float = BANK) -> float:
-    """The greatest constant speed over ground [m/s] at which bank, thrust, tilt, air and vertical speed are in limits.
+    """The greatest constant speed over ground at which bank, thrust, tilt, air and vertical speed are in limits.
 
-    Between take-off and landing; 0 when there is none, as at a corner; to a millimetre per second. In a strong tail
-    wind a UAV may have to be fast: the speeds that work needn't begin at 0. Of ranges of speeds that work only one
-    narrower than a 64th of what air speed and bank allow may be overlooked.
+    The greatest v with v² ≤ g·tan(bank)/κ that leaves |T|, tilt, |v t − wind| and v t_z within the UAV's limits, with t
+    the tangent. See `tilted_thrust` for T.
+
+    In a strong tail wind a UAV may have to be fast: the speeds that work needn't begin at 0. Of ranges of speeds that
+    work only one narrower than a 64th of what air speed and bank allow may be overlooked.
+
+    Parameters
+    ----------
+    curve : Curve
+        What counts is the part between take-off and landing.
+    uav : UAV
+    wind : (2,) or (3,) array
+        Mean wind, where the air moves to [m/s].
+    bank : float
+        Bank angle that turns may take [rad], between 0 and π/2.
+
+    Returns
+    -------
+    float
+        [m/s], to a millimetre per second; 0 when there is none, as at a corner.
+
+    Raises
+    ------
+    ValueError
+        If `curve` or `uav` is of another kind, `wind` is not two or three finite numbers, or `bank` is not between 0
+        and π/2.
+
+    See Also
+    --------
+    allowed_speed : By the bank angle alone.
+    feasibility : Each limit at one speed.
+
+    Examples
+    --------
+    >>> from uavlab.spline import Curve, greatest_speed
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> curve = Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
+    >>> round(greatest_speed(curve, LIGHT_QUADROTOR), 1)
+    9.1
+    >>> round(greatest_speed(curve, LIGHT_QUADROTOR, wind=(-15, 0)), 1)  # 18 m/s through the air
+    3.0
     """
     checks.instance("curve", curve, Curve)
     checks.instance("uav", uav, UAV)

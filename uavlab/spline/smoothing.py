@@ -59,7 +59,27 @@ def smooth(
     Raises
     ------
     ValueError
-        If the route didn't arrive, repeats a waypoint, or doesn't keep what is asked for; the message says where.
+        If `route`, `city` or `uav` is of another kind. If `route` didn't arrive, repeats a waypoint, comes so near to
+        an obstacle that the body touches it, or doesn't keep `min_clearance`, `min_height`, `max_height`, `safe_height`
+        before it is smoothed (the message says where). If `min_clearance`, `min_height` or `safe_height` is negative,
+        or `max_height` not above `min_height`.
+
+    See Also
+    --------
+    uavlab.planners.shortcut : Leaves out needless waypoints first.
+    feasibility : Whether a UAV can fly the curve.
+
+    Examples
+    --------
+    >>> from uavlab.city import table1_city
+    >>> from uavlab.planners import astar, shortcut
+    >>> from uavlab.spline import smooth
+    >>> from uavlab.vehicle import LIGHT_QUADROTOR
+    >>> city = table1_city()
+    >>> route = shortcut(astar(city, (5, 5, 30), (95, 95, 30), min_clearance=2.0), city)
+    >>> curve = smooth(route, city, LIGHT_QUADROTOR)
+    >>> curve, curve.clearance(city) >= 2.0
+    (<Curve by A* + shortcut + B-spline: 138.2 m, 14 control points>, True)
     """
     checks.instance("route", route, Route)
     checks.instance("city", city, City)
