@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.stats import chisquare
-from test_least_risk import (
+from risk_references import (
     ANY_LIMITS,
     OFFSETS,
     ROUND_THE_BEND,
@@ -24,6 +23,7 @@ from test_least_risk import (
     prices,
     random_case,
 )
+from scipy.stats import chisquare
 
 from uavlab.city import Building, City
 from uavlab.planners import ant_colony, ants, least_risk
@@ -225,7 +225,7 @@ def test_maps_above_have_ants_that_arrive_and_ants_that_get_stuck():
 
 def ground_of(risk_map, ends, habits, **changed):
     """What ants find before any has walked; none counts as long ago as −9."""
-    limits = question.checked_limits(risk_map, question.MAX_TURN, question.MAX_PITCH, 0.0, None, np.inf)
+    limits = question.checked_limits(risk_map, question.MAX_TURN, question.MAX_TURN, 0.0, None, np.inf)
     price = question.price_per_cell(risk_map, question.Weights())
     query = question.query_of(risk_map, price, *(code(risk_map, end) for end in ends), limits)
     nodes = query.blocked.size
@@ -505,7 +505,7 @@ def refuses(message, risk_map=BAD, ends=ENDS, **options):
         ({"initial_pheromone": np.nan}, "initial_pheromone must be finite"),
         ({"max_pheromone": (15.0, 1.0)}, "max_pheromone must be one number"),
         ({"risk_weight": 0.0}, "risk_weight, length_weight, threat_weight are all 0"),
-        ({"length": -1.0}, "length must be finite and at least 0, got -1"),
+        ({"length_weight": -1.0}, "length_weight must be finite and at least 0, got -1"),
         ({"max_turn": 60}, "max_turn must be from 0 to 3.14159 rad"),
         ({"max_pitch": np.nan}, "max_pitch must be from 0 to .* got nan"),
         ({"min_clearance": -1.0}, "min_clearance must be a distance in metres, at least 0"),
