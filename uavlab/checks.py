@@ -52,7 +52,7 @@ def whole(name: str, value: int, least: int, most: int = MOST) -> int:
     if not (isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least):
         raise ValueError(f"{name} must be a whole number of at least {least}, got {value!r}")
     if value > most:
-        raise ValueError(f"{name} must be at most {most:,}, or it never ends, got {int(value):.3g}")
+        raise ValueError(f"{name} must be at most {most:,}, or it never ends, got {min(int(value), 10**300):.3g}")
     return int(value)
 
 
