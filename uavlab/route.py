@@ -17,12 +17,15 @@ from uavlab.city.segments import least_clearance
 PROMISES = ("min_clearance", "min_height", "max_height", "safe_height")
 """What routes and curves remember that they keep [m]."""
 
+MOST_WAYPOINTS = 10_000_000
+"""Of a route that is resampled; more fill the memory."""
+
 
 def check_promises(of: Any) -> None:
     """Refuse those that are out of their range."""
     for name in ("min_clearance", "min_height", "safe_height"):
         checks.not_negative_number(name, getattr(of, name))
-    if not of.max_height > of.min_height:
+    if not checks.number("max_height", of.max_height) > of.min_height:
         raise ValueError(f"max_height must be above min_height = {of.min_height!r}, got {of.max_height!r}")
 
 
@@ -33,6 +36,7 @@ def promises_of(one: Any, **instead: float | None) -> dict[str, Any]:
 
 def as_route(way: Route | Way, name: str = "route") -> Route:
     """What is drawn, measured or flown as a route: itself, or a curve's points, joined by straight legs."""
+    checks.text("name", name)
     made: Any = way
     if not isinstance(way, type) and callable(getattr(way, "route", None)):
         made = made.route()
@@ -100,14 +104,18 @@ class Route:
 
     def __post_init__(self) -> None:
         check_promises(self)
-        if not self.max_length > 0:
+        if not checks.number("max_length", self.max_length) > 0:
             raise ValueError(f"max_length must be above 0, got {self.max_length!r}")
-        points = checks.numbers("points", self.points).copy()
-        if points.ndim != 2 or points.shape[1] != 3:
-            raise ValueError(f"points must have shape (N, 3), got {points.shape}")
-        if not np.isfinite(points).all():
-            raise ValueError("points must be finite: a waypoint is NaN or infinite")
-        object.__setattr__(self, "points", points)
+        checks.instance("info", self.info, dict)
+        checked: dict[str, Any] = {
+            "points": checks.array("points", self.points, None, 3).copy(),
+            "reached": checks.flag("reached", self.reached),
+        }
+        checked |= {name: str(checks.text(name, getattr(self, name))) for name in ("planner", "reason", "priced")}
+        checked |= {name: checks.whole(name, getattr(self, name), 0) for name in ("takeoff", "landing")}
+        checked |= {name: checks.number(name, getattr(self, name)) for name in ("cost", "max_length", *PROMISES)}
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
     @classmethod
     def none(cls, planner: str, reason: str, **info: Any) -> Route:
@@ -211,10 +219,13 @@ class Route:
             If the values haven't the city's shape, or the route leaves the map.
         """
         checks.instance("city", city, City)
-        if np.shape(values) != city.shape:
-            raise ValueError(f"values must have the city's shape {city.shape}, got {np.shape(values)}")
+        values = values if isinstance(values, np.ndarray) else checks.numbers("values", values)
+        if values.shape != city.shape:
+            raise ValueError(f"values must have the city's shape {city.shape}, got {values.shape}")
         index, length = self.voxels(city)
-        return float(checks.numbers("values", values)[tuple(index.T)] @ length)
+        passed = checks.numbers("values", values[tuple(index.T)])
+        checks.finite("values", passed)
+        return float(passed @ length)
 
     def voxels(self, city: City) -> tuple[np.ndarray, np.ndarray]:
         """The voxels (M, 3) that the route passes through, in order, and its length (M,) in each [m].
@@ -237,8 +248,10 @@ class Route:
         ValueError
             If `step` is not above 0.
         """
-        if not (np.isfinite(step) and step > 0):
-            raise ValueError(f"step must be a distance in metres, above 0, got {step!r}")
+        step = checks.positive_number("step", step)
+        if self.length > MOST_WAYPOINTS * step:
+            least = self.length / MOST_WAYPOINTS
+            raise ValueError(f"step must be at least {least:.2g} m on {self.length:.0f} m of route, got {step:g}")
         if len(self.points) < 2:
             return self
         parts = np.maximum(np.ceil(self.leg_lengths / step - 1e-9).astype(int), 1)
@@ -257,8 +270,7 @@ class Route:
         ValueError
             If `path` is no path; a number would be a file that is open already.
         """
-        if not isinstance(path, str | Path):
-            raise ValueError(f"path must be the name of a file, got {path!r}")
+        checks.path("path", path)
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(["x_m", "y_m", "z_m", "distance_m"])
