@@ -50,6 +50,7 @@ def test_a_seed_of_any_width_is_one():
         (lambda: checks.array("size", [1, np.nan, 3], 3), "size must be finite, got nan in it"),
         (lambda: checks.array("grid", 1.0, None, None), r"grid must have shape \(N, M\), got \(\)"),
         (lambda: checks.text("name", 3), "name must be text, got 3"),
+        (lambda: checks.whole("flights", 10**400, 1), "flights must be at most 1,000,000,000, or it never ends"),
         (lambda: checks.path("path", 2), "path must be the name of a file, got 2"),
         (lambda: checks.function("f", 3, "f(x)"), r"f must be a function, called as f\(x\), got 3"),
         (lambda: checks.function("f", City), "f must be a function, got <class"),

@@ -52,7 +52,7 @@ def whole(name: str, value: int, least: int, most: int = MOST) -> int:
     if not (isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least):
         raise ValueError(f"{name} must be a whole number of at least {least}, got {value!r}")
     if value > most:
-        raise ValueError(f"{name} must be at most {most:,}, or it never ends, got {int(value):.3g}")
+        raise ValueError(f"{name} must be at most {most:,}, or it never ends, got {min(int(value), 10**300):.3g}")
     return int(value)
 
 
@@ -208,6 +208,15 @@ def show(point: npt.ArrayLike) -> str:
 
 MAKERS = {
     "Autopilot": "Autopilot() is the usual one",
+    "Axes": "new_figure(width, height) makes some, too",
+    "Comparison": "compare_planners(planners, maps, ...) makes one",
+    "Controller": "uavlab.resilience has BASIC and ADVANCED",
+    "Figure": "all functions of uavlab.plot give one",
+    "Gps": "Gps() is the usual one, PERFECT_GPS one without errors",
+    "Monitor": "Monitor(ConditionCheck(predicted), uav_diameter) is one",
+    "Normalize": "Normalize(vmin, vmax) and LogNorm(vmin, vmax) of matplotlib.colors are some",
+    "Rate": "crash_rate(flights) gives one",
+    "SafetyDomain": "safety_domain(samples) of uavlab.offsets gives one",
     "Flight": "fly(route, city, uav, disturbance, rng=...) makes one",
     "Flights": "monte_carlo(route, city, uav, disturbance, rng=...) makes some",
     "City": "read_city(path) reads one, a RiskMap has one as its .city",
