@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from decimal import Decimal
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +28,8 @@ def numbers(name: str, value: npt.ArrayLike) -> np.ndarray:
             raise ValueError(f"got {NO_NUMBERS[values.dtype.kind]}, {value!r:.60}")
         if value is None:
             raise ValueError("got None")
+        if values.dtype == object and any(isinstance(item, str | bytes) for item in values.flat):
+            raise ValueError("got text in it")
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError, OverflowError) as wrong:
         raise ValueError(f"{name} must be a number or an array of numbers: {wrong}") from wrong
@@ -52,7 +56,9 @@ def whole(name: str, value: int, least: int, most: int = MOST) -> int:
     if not (isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least):
         raise ValueError(f"{name} must be a whole number of at least {least}, got {value!r}")
     if value > most:
-        raise ValueError(f"{name} must be at most {most:,}, or it never ends, got {int(value):.3g}")
+        raise ValueError(
+            f"{name} must be at most {most:,}, or it never ends, got {Decimal(int(value)).normalize():.3g}"
+        )
     return int(value)
 
 
@@ -85,12 +91,16 @@ def positive(name: str, value: npt.ArrayLike) -> None:
 
 
 def not_negative_number(name: str, value: npt.ArrayLike) -> float:
-    not_negative(name, one := number(name, value))
+    one = number(name, value)
+    if not 0 <= one < np.inf:
+        raise ValueError(f"{name} must be finite and at least 0, got {one:g}")
     return one
 
 
 def positive_number(name: str, value: npt.ArrayLike) -> float:
-    positive(name, one := number(name, value))
+    one = number(name, value)
+    if not 0 < one < np.inf:
+        raise ValueError(f"{name} must be finite and above 0, got {one:g}")
     return one
 
 
@@ -137,9 +147,9 @@ def text(name: str, value: str) -> str:
     return value
 
 
-def path(name: str, value: str | Path) -> Path:
+def path(name: str, value: str | PathLike[str]) -> Path:
     """The name of a file as a path; a number would be a file that is open already."""
-    if not isinstance(value, str | Path):
+    if not isinstance(value, str | PathLike):
         raise ValueError(f"{name} must be the name of a file, got {value!r:.60}")
     return Path(value)
 
