@@ -46,6 +46,8 @@ def frozen(values: npt.ArrayLike, kind: npt.DTypeLike = float) -> np.ndarray:
 
 def number(name: str, value: npt.ArrayLike) -> float:
     """The argument as one float: 10 of 8 bits, times 3600, would be too much for them."""
+    if isinstance(value, float):
+        return float(value)
     values = numbers(name, value)
     if values.shape:
         raise ValueError(f"{name} must be one number, got an array of shape {values.shape}")
@@ -76,16 +78,22 @@ def generator(name: str, rng: np.random.Generator | int | Sequence[int]) -> np.r
 
 
 def within(name: str, value: npt.ArrayLike, low: float, high: float, unit: str) -> None:
+    if isinstance(value, float) and low <= value <= high:  # most are, and arrays of one number take ten times as long
+        return
     values = numbers(name, value)
     refuse(values, (values >= low) & (values <= high), f"{name} must be from {low:g} to {high:g} {unit}")
 
 
 def not_negative(name: str, value: npt.ArrayLike) -> None:
+    if isinstance(value, float) and 0 <= value < np.inf:
+        return
     values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values >= 0), f"{name} must be finite and at least 0")
 
 
 def positive(name: str, value: npt.ArrayLike) -> None:
+    if isinstance(value, float) and 0 < value < np.inf:
+        return
     values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values > 0), f"{name} must be finite and above 0")
 
@@ -105,6 +113,8 @@ def positive_number(name: str, value: npt.ArrayLike) -> float:
 
 
 def at_least_one(name: str, value: npt.ArrayLike) -> None:
+    if isinstance(value, float) and 1 <= value < np.inf:
+        return
     values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values >= 1), f"{name} must be finite and at least 1")
 
@@ -251,6 +261,8 @@ def air(temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_
 
 
 def finite(name: str, value: npt.ArrayLike) -> None:
+    if isinstance(value, float) and -np.inf < value < np.inf:
+        return
     values = numbers(name, value)
     refuse(values, np.isfinite(values), f"{name} must be finite")
 
