@@ -120,6 +120,7 @@ class UAV:
     def __post_init__(self) -> None:
         for item in fields(self):
             value = getattr(self, item.name)
+            checked: str | float
             if item.name == "name":
                 checked = str(checks.text("name", value))
             elif item.name == "fall_drag_area" and value is None:
