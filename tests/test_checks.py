@@ -53,7 +53,7 @@ def test_a_seed_of_any_width_is_one():
         (lambda: checks.array("grid", 1.0, None, None), r"grid must have shape \(N, M\), got \(\)"),
         (
             lambda: checks.numbers("x", np.array(["3", 4.0], object)),
-            "x must be a number or an array of numbers: got text",
+            "x must be a number or an array of numbers: got text, '3'",
         ),
         (lambda: checks.whole("count", 10**400, 1), r"count must be at most 1,000,000,000, .*, got 1e\+400"),
         (lambda: checks.positive_number("x", 0.0), "x must be finite and above 0, got 0"),

@@ -28,8 +28,9 @@ def numbers(name: str, value: npt.ArrayLike) -> np.ndarray:
             raise ValueError(f"got {NO_NUMBERS[values.dtype.kind]}, {value!r:.60}")
         if value is None:
             raise ValueError("got None")
-        if values.dtype == object and any(isinstance(item, str | bytes) for item in values.flat):
-            raise ValueError("got text in it")
+        texts = [item for item in values.flat if isinstance(item, str | bytes)] if values.dtype == object else []
+        if texts:
+            raise ValueError(f"got text, {texts[0]!r:.60}")
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError, OverflowError) as wrong:
         raise ValueError(f"{name} must be a number or an array of numbers: {wrong}") from wrong
