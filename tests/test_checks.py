@@ -51,6 +51,7 @@ def test_a_seed_of_any_width_is_one():
         (lambda: checks.array("grid", 1.0, None, None), r"grid must have shape \(N, M\), got \(\)"),
         (lambda: checks.text("name", 3), "name must be text, got 3"),
         (lambda: checks.path("path", 2), "path must be the name of a file, got 2"),
+        (lambda: checks.path("path", ""), "path must be the name of a file, got ''"),
         (lambda: checks.function("f", 3, "f(x)"), r"f must be a function, called as f\(x\), got 3"),
         (lambda: checks.function("f", City), "f must be a function, got <class"),
         (lambda: checks.several("routes", Route([(0, 0, 0)]), Route), "routes must be a list of Route, got Route"),
