@@ -63,6 +63,7 @@ def test_a_seed_of_any_width_is_one():
         (lambda: checks.text("name", 3), "name must be text, got 3"),
         (lambda: checks.whole("flights", 10**400, 1), "flights must be at most 1,000,000,000, or it never ends"),
         (lambda: checks.path("path", 2), "path must be the name of a file, got 2"),
+        (lambda: checks.path("path", ""), "path must be the name of a file, got ''"),
         (lambda: checks.function("f", 3, "f(x)"), r"f must be a function, called as f\(x\), got 3"),
         (lambda: checks.function("f", City), "f must be a function, got <class"),
         (lambda: checks.several("routes", Route([(0, 0, 0)]), Route), "routes must be a list of Route, got Route"),

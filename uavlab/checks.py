@@ -160,7 +160,7 @@ def text(name: str, value: str) -> str:
 
 def path(name: str, value: str | PathLike[str]) -> Path:
     """The name of a file as a path; a number would be a file that is open already."""
-    if not isinstance(value, str | PathLike):
+    if not isinstance(value, str | PathLike) or value == "":
         raise ValueError(f"{name} must be the name of a file, got {value!r:.60}")
     return Path(value)
 
