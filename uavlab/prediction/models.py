@@ -258,7 +258,11 @@ def compare_models(
 def scores_of_seed(seed: int, setting: str | Setting, models: Mapping[str, Model]) -> list[dict[str, Any]]:
     data = make_dataset(setting, seed)
     limit = bayes_accuracy(data.log_median[data.test], data.noise, data.class_count)
-    return [{"model": name, "seed": seed, **score(data, model(data)), "bayes": limit} for name, model in models.items()]
+    rows = []
+    for name, model in models.items():
+        predicted = checks.numbers(f"what models[{name!r}] returns", model(data))
+        rows.append({"model": name, "seed": seed, **score(data, predicted), "bayes": limit})
+    return rows
 
 
 def student_t(count: int, coverage: float = 0.95) -> float:

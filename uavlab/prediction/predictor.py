@@ -163,7 +163,9 @@ class OffsetPredictor:
         table = checked_columns(features, self.features)
         reached = checks.numbers("offsets", offsets)
         if reached.shape != (len(table),):
-            raise ValueError(f"offsets must have shape ({len(table)},), one for each row of features, got {reached.shape}")
+            raise ValueError(
+                f"offsets must have shape ({len(table)},), one for each row of features, got {reached.shape}"
+            )
         joined = table.assign(offsets=reached)
         wrong = missing_values(joined)
         if wrong and not drop_nan:
