@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib import colors
 from things import (
     BREEZE,
+    CALM,
     COMPARISON,
     CURVE,
     DOMAIN,
@@ -42,6 +43,7 @@ from things import (
     SOURCE,
     SQUARE,
     START,
+    STILL,
     TERRAIN,
     TOWN,
     VEHICLE,
@@ -107,6 +109,10 @@ INSIDE = {
 
 def bowl(x):
     return ((x - 0.25) ** 2).sum(axis=1)
+
+
+def changing(time):
+    return STILL if time < 1.0 else CALM
 
 
 def level(x):
@@ -278,6 +284,7 @@ CALLS = {
     "flight.crash_rate": lambda: {"runs": [FLIGHTS, FLIGHTS]},
     "flight.fly": lambda: flown(number=1),
     "flight.fly: in wind": lambda: flown(number=1, disturbance=BREEZE),
+    "flight.fly: in changing air": lambda: flown(number=1, disturbance=changing),
     "flight.monte_carlo": lambda: flown(flights=3, every=0.5, jobs=1, progress=False),
     "flight.offset_sigma": lambda: {
         "uav": DRONE, "wind": BREEZE, "ground_velocity": (1.0, 0.0, 0.0), "altitude": 32.0, "controller": ADVANCED,
@@ -381,6 +388,10 @@ CALLS = {
     },
     "planners.repare": lambda: planned(
         load="dead", disturbance="none", uav=DRONE, reading="table", mean_offset=(0.25, 0.0, 0.0), penalty=2.0,
+        force_weight=1.0, load_weight=1.0, zone="ball", interval=1.0, as_printed=False, record=False, **heights()
+    ),
+    "planners.repare: in changing air": lambda: planned(
+        load=0.0, disturbance=changing, uav=DRONE, reading="table", mean_offset=(0.25, 0.0, 0.0), penalty=2.0,
         force_weight=1.0, load_weight=1.0, zone="ball", interval=1.0, as_printed=False, record=False, **heights()
     ),
     "planners.repare_price": lambda: {

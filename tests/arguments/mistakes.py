@@ -475,6 +475,9 @@ def mapping_mistakes(spot: Spot) -> Iterator[tuple[str, Any]]:
         yield "a City inside", {**value, first: things.TOWN}
         yield "a class inside", {**value, first: float}
         yield "numbers for names", {1: value[first]}
+        if callable(value[first]):
+            yield "one that returns None", {**value, first: lambda *given, **named: None}
+            yield "one that returns text", {**value, first: lambda *given, **named: "much"}
 
 
 def names_mistakes(spot: Spot) -> Iterator[tuple[str, Any]]:
