@@ -8,6 +8,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
+from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -106,12 +107,8 @@ def tracks(
         ends = np.array([flight.position[-1, :2] for flight in flown if flight.outcome == "crashed"]).reshape(-1, 2)
         title = f"{plain(name)}: {len(ends)} of {len(flown)} crash" if flown else plain(name)
         if name in planned:
-            way = planned[name]
-            axes.plot(*way.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2)
-            axes.plot(*way.points[:1, :2].T, "o", color=ROUTE_COLORS[2], markersize=7)
-            mark = "^" if way.reached else "s"
-            axes.plot(*way.points[-1:, :2].T, mark, color=ROUTE_COLORS[2], markersize=7)
-            title = title if way.reached else f"{plain(name)}: doesn't arrive"
+            draw_planned(axes, planned[name])
+            title = title if planned[name].reached else f"{plain(name)}: doesn't arrive"
         axes.plot(*ends.T, "x", color=CRASH_COLOR, markersize=8, markeredgewidth=2, zorder=5)
         axes.set(xlim=(west, east), ylim=(south, north))
         axes.set_title(title, fontsize=10)
@@ -129,6 +126,13 @@ def tracks(
     handles = [Line2D([], [], color=c, linestyle=line, marker=m, label=label) for c, line, m, label in parts]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=8)
     return finished(figure)
+
+
+def draw_planned(axes: Axes, route: Route) -> None:
+    """What was to be flown, dashed: a disc where it starts, a triangle at its goal, a square where it got stuck."""
+    axes.plot(*route.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2)
+    axes.plot(*route.points[:1, :2].T, "o", color=ROUTE_COLORS[2], markersize=7)
+    axes.plot(*route.points[-1:, :2].T, "^" if route.reached else "s", color=ROUTE_COLORS[2], markersize=7)
 
 
 def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01) -> Figure:
