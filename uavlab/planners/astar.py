@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -155,19 +156,9 @@ def cheapest_route(
     parent = sparse_array(np.zeros, city.occupied.size, np.uint8)
     backwards = prices is not None and not as_printed and prices.flat[source] < prices.flat[target]
     first, last = (target, source) if backwards else (source, target)
-    expanded, order = search(
-        blocked,
-        prices,
-        as_printed,
-        HEURISTICS[heuristic],
-        (1.0 if as_printed else cheapest) * TIE_BREAK,
-        first,
-        last,
-        g,
-        parent,
-        open_list(city.occupied.size),
-        record,
-    )
+    weight = (1.0 if as_printed else cheapest) * TIE_BREAK
+    query = Query(blocked, as_printed, HEURISTICS[heuristic], weight, first, last)
+    expanded, order = search(query, prices, Tree(g, parent), open_list(city.occupied.size), record)
     info = {"expanded": expanded, "heuristic": heuristic}
     if record:
         info["order"] = order[:expanded]
@@ -260,21 +251,41 @@ def ring_meets_obstacle(occupied: np.ndarray, radius: int) -> np.ndarray:
 UNSEEN, START = 0, 27  # values of `parent`; 1 to 26: the move that led to the node
 
 
+class Query(NamedTuple):
+    """A question, for compiled code; the price comes beside it, so that none costs nothing."""
+
+    blocked: np.ndarray  # (nx, ny, nz) bool
+    as_printed: bool
+    heuristic: int
+    weight: float  # of the estimate
+    start: int
+    goal: int
+
+
+class Tree(NamedTuple):
+    """What is known of each node (nodes,)."""
+
+    g: np.ndarray  # cost so far
+    parent: np.ndarray
+
+
 @compiled
-def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent, waiting, record):
+def search(query, price, tree, waiting, record):
     """Expand nodes in order of g + h until the goal is the first; `parent` then holds the tree.
 
     Returns how many nodes were expanded and, with `record`, which, in order; a node may be expanded again (Eq. 13).
     """
+    blocked, as_printed, goal = query.blocked, query.as_printed, query.goal
+    g, parent = tree
     ny, nz = blocked.shape[1], blocked.shape[2]
     steps = steps_of(blocked)
     goal_i, goal_j, goal_k = goal // (ny * nz), goal // nz % ny, goal % nz
     prices = price.ravel() if price is not None else None
     expanded = 0
     order = np.empty(1024 if record else 0, np.int32)
-    g[start] = 0.0
-    parent[start] = START
-    push(waiting, start, 0.0)
+    g[query.start] = 0.0
+    parent[query.start] = START
+    push(waiting, query.start, 0.0)
     while waiting.size[0] > 0:
         node = pop(waiting)
         if node == goal:
@@ -300,7 +311,7 @@ def search(blocked, price, as_printed, heuristic, weight, start, goal, g, parent
                 g[neighbour] = cost
                 parent[neighbour] = move + 1
                 di, dj, dk = MOVES[move]
-                left = weight * distance_left(heuristic, goal_i - i - di, goal_j - j - dj, goal_k - k - dk)
+                left = query.weight * distance_left(query.heuristic, goal_i - i - di, goal_j - j - dj, goal_k - k - dk)
                 factor = prices[neighbour] if prices is not None and as_printed else 1.0
                 push(waiting, neighbour, cost * factor + left)
     return expanded, order

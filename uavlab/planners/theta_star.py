@@ -11,13 +11,14 @@ from __future__ import annotations
 import itertools
 import time
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.city.bounds import bounds_of, keeps
+from uavlab.city.bounds import Bounds, bounds_of, keeps
 from uavlab.compiled import compiled
 from uavlab.planners.astar import COST_ROUNDING, no_way
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, steps_of
@@ -33,6 +34,27 @@ TAUT_STEPS, TAUT_POINTS = (0.5, 0.25), 12
 """A route is pulled taut by shortcuts over so many points on each side of its corners, so many voxels apart."""
 
 UNSEEN, OPEN, CLOSED = 0, 1, 2
+
+
+class Query(NamedTuple):
+    """A question, for compiled code; the price comes beside it, so that none costs nothing."""
+
+    blocked: np.ndarray  # (nx, ny, nz) bool
+    bounds: Bounds
+    cheapest: float  # price
+    weight: float  # of the estimate
+    start: int
+    goal: int
+
+
+class Tree(NamedTuple):
+    """What is known of each node (nodes,); see `search`."""
+
+    g: np.ndarray
+    parent: np.ndarray
+    bound: np.ndarray
+    guess: np.ndarray  # a node + 1, or 0
+    state: np.ndarray  # UNSEEN, OPEN, CLOSED
 
 
 def theta_star(
@@ -103,21 +125,22 @@ def theta_star(
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
     count = city.occupied.size
     code = code_type(count)
-    g, parent = sparse_array(np.empty, count, np.float64), sparse_array(np.empty, count, code)
-    bound, guess = sparse_array(np.empty, count, np.float64), sparse_array(np.zeros, count, code)
-    state = sparse_array(np.zeros, count, np.uint8)
-    expanded = search(
-        airspace.blocked, bounds_of(city, **airspace.promises), prices, cheapest, float(weight),
-        ends.source, ends.target, g, parent, bound, guess, state, open_list(count),
+    tree = Tree(
+        sparse_array(np.empty, count, np.float64), sparse_array(np.empty, count, code),
+        sparse_array(np.empty, count, np.float64), sparse_array(np.zeros, count, code),
+        sparse_array(np.zeros, count, np.uint8),
     )  # fmt: skip
+    bounds = bounds_of(city, **airspace.promises)
+    query = Query(airspace.blocked, bounds, cheapest, float(weight), ends.source, ends.target)
+    expanded = search(query, prices, tree, open_list(count))
     info = {"expanded": expanded}
-    if state[ends.target] == UNSEEN:
+    if tree.state[ends.target] == UNSEEN:
         route = replace(no_way(city, ends.source, ends.target, expanded), planner="Theta*", info=info)
     else:
         nodes = [ends.target]
         while nodes[-1] != ends.source:
-            nodes.append(int(parent[nodes[-1]]))
-        cost = float(g[ends.target]) * city.cell
+            nodes.append(int(tree.parent[nodes[-1]]))
+        cost = float(tree.g[ends.target]) * city.cell
         points = city.center_of(city.index_of(np.array(nodes[::-1])))
         route = Route(points, "Theta*", cost=cost, info=info, **airspace.promises)
     for step in TAUT_STEPS if taut and route.reached else ():
@@ -140,19 +163,21 @@ def around_corners(points: np.ndarray, step: float) -> np.ndarray:
 
 
 @compiled
-def search(blocked, bounds, price, cheapest, weight, start, goal, g, parent, bound, guess, state, waiting):
+def search(query, price, tree, waiting):
     """Expand nodes in order of g + weight·h until the goal is the first; `parent` then holds the tree.
 
     A node that waits has a cost g that is sure, if its state is OPEN, or one that it can't be below, `bound`, if it
     were in sight of guess − 1; or both. Returns how many were expanded.
     """
+    blocked, cheapest, weight = query.blocked, query.cheapest, query.weight
+    g, parent, bound, guess, state = tree
     ny, nz = blocked.shape[1], blocked.shape[2]
     steps = steps_of(blocked)
     here, there, aim = np.empty(3), np.empty(3), np.empty(3)
-    put_centre(aim, goal, ny, nz)
+    put_centre(aim, query.goal, ny, nz)
     expanded = 0
-    g[start], parent[start], state[start] = 0.0, start, OPEN
-    push(waiting, start, 0.0)
+    g[query.start], parent[query.start], state[query.start] = 0.0, query.start, OPEN
+    push(waiting, query.start, 0.0)
     while waiting.size[0] > 0:
         key = waiting.key[1]
         node = pop(waiting)
@@ -161,12 +186,12 @@ def search(blocked, bounds, price, cheapest, weight, start, goal, g, parent, bou
         put_centre(here, node, ny, nz)
         if guess[node] > 0:
             put_centre(there, guess[node] - 1, ny, nz)
-            look(bounds, price, cheapest, node, here, there, around, steps, g, parent, guess, state)
+            look(query, price, tree, node, here, there, around, steps)
             later = g[node] + weight * cheapest * distance(here, aim)
             if later * COST_ROUNDING > key:
                 push(waiting, node, later)
                 continue
-        if node == goal:
+        if node == query.goal:
             break
         state[node] = CLOSED
         expanded += 1
@@ -188,15 +213,16 @@ def search(blocked, bounds, price, cheapest, weight, start, goal, g, parent, bou
 
 
 @compiled
-def look(bounds, price, cheapest, node, here, there, around, steps, g, parent, guess, state):
+def look(query, price, tree, node, here, there, around, steps):
     """Make a node's cost sure: by the line from `there`, if it is free, or over a neighbour that was expanded."""
+    g, parent, guess, state = tree.g, tree.parent, tree.guess, tree.state
     best = g[node] if state[node] == OPEN else np.inf
     far = guess[node] - 1
     guess[node] = 0
     state[node] = OPEN
-    free, _ = keeps(bounds, there, here, 0.0, 0.0)
+    free, _ = keeps(query.bounds, there, here, 0.0, 0.0)
     if free:
-        cost = g[far] + line_price(price, cheapest, there, here, np.inf)
+        cost = g[far] + line_price(price, query.cheapest, there, here, np.inf)
         if cost < best:
             best, parent[node] = cost, far
     if not free or price is not None:
