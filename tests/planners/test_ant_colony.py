@@ -31,6 +31,7 @@ from uavlab.planners import risk_question as question
 from uavlab.planners.ant_colony import OURS
 from uavlab.planners.grid import MOVES
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
+from uavlab.spline.limits import MAX_PITCH
 
 
 def pheromone(least, first, most):
@@ -225,7 +226,7 @@ def test_maps_above_have_ants_that_arrive_and_ants_that_get_stuck():
 
 def ground_of(risk_map, ends, habits, **changed):
     """What ants find before any has walked; none counts as long ago as −9."""
-    limits = question.checked_limits(risk_map, question.MAX_TURN, question.MAX_PITCH, 0.0, None, np.inf)
+    limits = question.checked_limits(risk_map, question.MAX_TURN, MAX_PITCH, 0.0, None, np.inf)
     price = question.price_per_cell(risk_map, question.Weights())
     query = question.query_of(risk_map, price, *(code(risk_map, end) for end in ends), limits)
     nodes = query.blocked.size
@@ -505,10 +506,13 @@ def refuses(message, risk_map=BAD, ends=ENDS, **options):
         ({"initial_pheromone": np.nan}, "initial_pheromone must be finite"),
         ({"max_pheromone": (15.0, 1.0)}, "max_pheromone must be one number"),
         ({"risk_weight": 0.0}, "risk_weight, length_weight, threat_weight are all 0"),
-        ({"length": -1.0}, "length must be finite and at least 0, got -1"),
+        ({"height_guided": 1}, "height_guided must be True or False, got 1"),
+        ({"record": "no"}, "record must be True or False, got 'no'"),
+        ({"as_printed": True, "alpha": -1.0}, "alpha must be finite and at least 0, got -1"),
+        ({"length_weight": -1.0}, "length_weight must be finite and at least 0, got -1"),
         ({"max_turn": 60}, "max_turn must be from 0 to 3.14159 rad"),
         ({"max_pitch": np.nan}, "max_pitch must be from 0 to .* got nan"),
-        ({"min_clearance": -1.0}, "min_clearance must be a distance in metres, at least 0"),
+        ({"min_clearance": -1.0}, "min_clearance must be finite and at least 0, got -1"),
     ],
 )
 def test_arguments_out_of_range_are_refused(options, message):

@@ -16,7 +16,10 @@ from scipy.sparse.csgraph import dijkstra
 from uavlab.city import Building, City
 from uavlab.planners import least_risk, pareto_front
 from uavlab.planners.heap import open_list
+from uavlab.planners.risk_question import MAX_TURN, edge
+from uavlab.planners.risk_search import NOWHERE, rest_of_cost, search_labels, search_states
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
+from uavlab.spline.limits import MAX_PITCH
 
 module = importlib.import_module("uavlab.planners.least_risk")  # the package gives the function this name
 
@@ -253,10 +256,10 @@ def test_looking_back_from_the_goal_saves_four_expansions_of_five():
 @pytest.mark.parametrize("number", range(8))
 def test_second_search_walks_almost_straight_to_the_goal(number):
     risk_map = campus(number)
-    limits = module.checked_limits(risk_map, module.MAX_TURN, module.MAX_PITCH, 0.0, None, np.inf)
+    limits = module.checked_limits(risk_map, MAX_TURN, MAX_PITCH, 0.0, None, np.inf)
     price = module.price_per_cell(risk_map, module.Weights())
     query = module.query_of(risk_map, price, *(code(risk_map, end) for end in CAMPUS_FLIGHT), limits)
-    _, nodes = module.rest_of_cost(query, query.source, open_list(query.blocked.size))
+    _, nodes = rest_of_cost(query, query.source, open_list(query.blocked.size))
     route = least_risk(risk_map, *CAMPUS_FLIGHT)
     assert len(route.points) - 1 <= route.info["expanded"] - nodes < 0.03 * nodes
 
@@ -591,7 +594,7 @@ def refuses(ask, message, *arguments, **options):
         ({"max_pitch": 1.6}, "max_pitch must be from 0 to 1.5708 rad .* got 1.6"),
         ({"max_pitch": -1}, "max_pitch must be from 0 to .* got -1"),
         ({"max_pitch": np.nan}, "max_pitch must be from 0 to .* got nan"),
-        ({"min_clearance": -1.0}, "min_clearance must be a distance in metres, at least 0, got -1.0"),
+        ({"min_clearance": -1.0}, "min_clearance must be finite and at least 0, got -1"),
         ({"min_clearance": np.nan}, "min_clearance must be .* got nan"),
         ({"min_clearance": None}, "min_clearance must be a number .* got None"),
         ({"min_clearance": "3 m"}, "min_clearance must be a number .* got text, '3 m'"),
@@ -651,11 +654,11 @@ def test_ends_that_may_not_be_flown_are_told_why_and_where_one_may(ask):
             {"risk_weight": 0.0},
             "risk_weight, length_weight, threat_weight are all 0: give at least one of them a weight above 0",
         ),
-        ({"risk": -1.0}, "risk must be finite and at least 0, got -1"),
-        ({"length": np.inf}, "length must be finite and at least 0, got inf"),
-        ({"threat": np.nan}, "threat must be finite and at least 0, got nan"),
-        ({"threat": [1.0, 2.0]}, "threat must be one number"),
-        ({"heuristic": "octile"}, "heuristic must be 'backward' or 'zero', got 'octile'"),
+        ({"risk_weight": -1.0}, "risk_weight must be finite and at least 0, got -1"),
+        ({"length_weight": np.inf}, "length_weight must be finite and at least 0, got inf"),
+        ({"threat_weight": np.nan}, "threat_weight must be finite and at least 0, got nan"),
+        ({"threat_weight": [1.0, 2.0]}, "threat_weight must be one number"),
+        ({"heuristic": "octile"}, "heuristic must be one of 'backward', 'zero', got 'octile'"),
         ({"max_length": 0.0}, "max_length must be above 0, got 0"),
         ({"max_length": np.nan}, "max_length must be above 0, got nan"),
         ({"max_length": "far"}, "max_length must be a number"),
@@ -684,7 +687,7 @@ def test_lengths_that_make_no_question_are_refused(lengths, message):
 
 
 def test_threat_needs_buildings_that_the_city_knows():
-    refuses(least_risk, "city must know its buildings", tunnel(), *THROUGH_THE_WALL, threat=1.0)
+    refuses(least_risk, "city must know its buildings", tunnel(), *THROUGH_THE_WALL, threat_weight=1.0)
 
 
 def test_ends_may_lie_anywhere_in_their_voxels():
@@ -697,32 +700,32 @@ def test_ends_may_lie_anywhere_in_their_voxels():
 def test_compiled_and_plain_python_agree(seed, drift):
     risk_map, ends, limits, best = constrained_case(seed)
     kept = module.checked_limits(risk_map, limits["max_turn"], limits["max_pitch"], 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, 1.0, 0.0, 0.0, drift)
+    price = module.price_per_cell(risk_map, module.Weights(drift=drift))
     query = module.query_of(risk_map, price, *(code(risk_map, end) for end in ends), kept)
     by_length, count = module.city_lengths(query), query.blocked.size
 
-    def run(name, *arguments):
-        return getattr(module, name)(*arguments), getattr(module, name).py_func(*arguments)
+    def run(search, *arguments):
+        return search(*arguments), search.py_func(*arguments)
 
     rests = []
     for question in (query, by_length):
-        for until in (question.source, module.NOWHERE):
-            fast, plain = run("rest_of_cost", question, until, open_list(count))
+        for until in (question.source, NOWHERE):
+            fast, plain = run(rest_of_cost, question, until, open_list(count))
             assert np.array_equal(fast[0], plain[0])
             assert fast[1] == plain[1] > 10
             rests.append(fast[0])
     trees = []
-    for search in (module.search_states, module.search_states.py_func):
+    for search in (search_states, search_states.py_func):
         g, parent = np.empty(count * 9), np.zeros(count * 9, np.uint8)
         found = search(query, rests[0], g, parent, open_list(count * 9))
         trees.append((*found, g[parent > 0].tolist(), parent.tolist()))
     assert trees[0] == trees[1]
     limits_in_cells = np.array([length for _, length in best]) / risk_map.city.cell
-    fast, plain = run("search_labels", query, module.city_lengths(query), rests[1], rests[3], limits_in_cells)
+    fast, plain = run(search_labels, query, module.city_lengths(query), rests[1], rests[3], limits_in_cells)
     for a, b in zip(fast, plain, strict=True):
         assert np.array_equal(a, b)
     assert len(fast[3]) >= 1
-    assert len({f(query, 3, 1, 2) for f in (module.edge, module.edge.py_func)}) == 1
+    assert len({f(query, 3, 1, 2) for f in (edge, edge.py_func)}) == 1
 
 
 EVEN = """

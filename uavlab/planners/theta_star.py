@@ -74,7 +74,7 @@ def theta_star(
     ------
     ValueError
         If `city`, `start`, `goal`, `price`, `min_clearance`, `min_height` or `max_height` is what `astar` refuses. If
-        `weight` is below 1 or not finite.
+        `weight` is below 1 or not finite. If `taut` is neither True nor False.
 
     See Also
     --------
@@ -96,8 +96,8 @@ def theta_star(
     <Route by A* + shortcut: 135.5 m, 5 waypoints>
     """
     began = time.perf_counter()
-    checks.at_least_one("weight", weight)
-    checks.number("weight", weight)
+    checks.at_least_one("weight", weight := checks.number("weight", weight))
+    taut = checks.flag("taut", taut)
     airspace = Airspace(city, min_clearance, min_height, max_height)
     ends = endpoints(airspace, start, goal)
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
@@ -107,7 +107,7 @@ def theta_star(
     bound, guess = sparse_array(np.empty, count, np.float64), sparse_array(np.zeros, count, code)
     state = sparse_array(np.zeros, count, np.uint8)
     expanded = search(
-        airspace.blocked, bounds_of(city, **airspace.promises), prices, cheapest, float(weight),
+        airspace.blocked, bounds_of(city, **airspace.promises), prices, cheapest, weight,
         ends.source, ends.target, g, parent, bound, guess, state, open_list(count),
     )  # fmt: skip
     info = {"expanded": expanded}
