@@ -1,5 +1,7 @@
 """What several functions check alike."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -49,8 +51,19 @@ def test_a_seed_of_any_width_is_one():
         (lambda: checks.array("size", [[1, 2, 3]], 3), r"size must have shape \(3,\), got \(1, 3\)"),
         (lambda: checks.array("size", [1, np.nan, 3], 3), "size must be finite, got nan in it"),
         (lambda: checks.array("grid", 1.0, None, None), r"grid must have shape \(N, M\), got \(\)"),
+        (
+            lambda: checks.numbers("x", np.array(["3", 4.0], object)),
+            "x must be a number or an array of numbers: got text, '3'",
+        ),
+        (lambda: checks.whole("count", 10**400, 1), r"count must be at most 1,000,000,000, .*, got 1e\+400"),
+        (lambda: checks.positive_number("x", 0.0), "x must be finite and above 0, got 0"),
+        (lambda: checks.positive_number("x", np.inf), "x must be finite and above 0, got inf"),
+        (lambda: checks.not_negative_number("x", -1), "x must be finite and at least 0, got -1"),
+        (lambda: checks.not_negative_number("x", np.nan), "x must be finite and at least 0, got nan"),
         (lambda: checks.text("name", 3), "name must be text, got 3"),
+        (lambda: checks.whole("flights", 10**400, 1), "flights must be at most 1,000,000,000, or it never ends"),
         (lambda: checks.path("path", 2), "path must be the name of a file, got 2"),
+        (lambda: checks.path("path", ""), "path must be the name of a file, got ''"),
         (lambda: checks.function("f", 3, "f(x)"), r"f must be a function, called as f\(x\), got 3"),
         (lambda: checks.function("f", City), "f must be a function, got <class"),
         (lambda: checks.several("routes", Route([(0, 0, 0)]), Route), "routes must be a list of Route, got Route"),
@@ -67,11 +80,13 @@ def test_what_is_of_another_kind_is_named(check, message):
         check()
 
 
-def test_what_is_right_comes_back():
+def test_what_is_right_comes_back(tmp_path):
+    (tmp_path / "a.csv").touch()
     assert checks.array("points", [(1, 2, 3)], ..., 3).dtype == float
     assert checks.array("points", np.zeros((2, 4, 3)), ..., 3).shape == (2, 4, 3)
     assert checks.array("values", [np.inf], None, finite=False).tolist() == [np.inf]
     assert checks.path("path", "a.csv").name == "a.csv"
+    assert [checks.path("path", entry) for entry in os.scandir(tmp_path)] == [tmp_path / "a.csv"]
     assert checks.several("routes", (Route([(0, 0, 0)]),), Route)[0].planner == "given"
     assert list(checks.by_name("functions", {"f": abs})) == ["f"]
 

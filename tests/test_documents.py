@@ -119,7 +119,7 @@ def test_help_shows_signatures_that_read():
 
 
 def test_modules_are_chapters():
-    """Each has a docstring; no more than 300 lines of code; annotations that aren't evaluated; at most six long bodies."""
+    """Each has a docstring, at most 300 lines of code, and annotations as text; at most six bodies have over 40."""
     long = []
     for path in sorted((ROOT / "uavlab").rglob("*.py")):
         text = path.read_text(encoding="utf-8")
@@ -209,7 +209,7 @@ def test_readme_s_program_runs(tmp_path, monkeypatch, capsys):
     (program,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
     exec(compile(program, "README.md", "exec"), {})
     assert {path.name for path in tmp_path.iterdir()} >= {"profile.png", "route.csv"}
-    assert "crashes" in capsys.readouterr().out or True
+    assert "per 1 000" in capsys.readouterr().out
 
 
 def test_the_guide_names_parameters_that_are_there():

@@ -151,6 +151,16 @@ def test_corner_shows_where_the_body_touches_and_its_width(table1):
         (lambda city, curve: plot.curve_profile([curve], speed=8, cell=5), "curves must be a Curve, got list"),
         (lambda city, curve: plot.curve_profile(curve, speed=0, cell=5), "speed must be finite and above 0"),
         (lambda city, curve: plot.curve_profile(curve, speed=8, cell=-5), "cell must be finite and above 0"),
+        (lambda city, curve: plot.curve_profile(curve, speed=8, cell=5, bank=30), "bank must be below π/2 rad"),
+        (lambda city, curve: plot.curve_profile(curve, speed=8, cell=5, max_pitch=60), "max_pitch must be from 0 to"),
+        (
+            lambda city, curve: plot.corner(city, curve, center=(5, 5), reach=5, uav_diameter=1),
+            r"center must have shape \(3,\)",
+        ),
+        (
+            lambda city, curve: plot.corner(city, curve, center=(5, 5, 5), reach=5, uav_diameter=1, route=3),
+            "route must be a Route, got int",
+        ),
         (
             lambda city, curve: plot.corner(city, curve.route(), center=(0, 0, 0), reach=5, uav_diameter=1),
             "curves must be a Curve, got Route",
@@ -159,7 +169,7 @@ def test_corner_shows_where_the_body_touches_and_its_width(table1):
             lambda city, curve: plot.corner(city, curve, center=(5, 5, 120), reach=5, uav_diameter=1),
             "height must lie on",
         ),
-        (lambda city, curve: plot.corner(city, curve, center=5, reach=5, uav_diameter=1), "center must be"),
+        (lambda city, curve: plot.corner(city, curve, center=5, reach=5, uav_diameter=1), "center must have"),
         (lambda city, curve: plot.corner(city, curve, center=(5, 5, 5), reach=0, uav_diameter=1), "reach must be"),
         (
             lambda city, curve: plot.corner(city, curve, center=(5, 5, 5), reach=5, uav_diameter=0),
@@ -363,7 +373,7 @@ def test_convergence_shows_every_line_and_tells_planners_apart_by_color_and_styl
 @pytest.mark.parametrize(
     ("change", "arguments", "message"),
     [
-        ({}, {"by": "seconds"}, "by must be 'evaluations' or 'iterations', got 'seconds'"),
+        ({}, {"by": "seconds"}, "by must be one of 'evaluations', 'iterations', got 'seconds'"),
         ({}, {"until": 1}, "until must be"),
         ({"histories": np.full((2, 2, 3, 12), np.inf)}, {}, "comparison must have a planner with a route"),
         ({"planners": list("abcdefg")}, {}, "at most 6 planners"),
@@ -372,7 +382,7 @@ def test_convergence_shows_every_line_and_tells_planners_apart_by_color_and_styl
 def test_convergence_refuses_what_it_cannot_draw(change, arguments, message):
     with pytest.raises(ValueError, match=message):
         plot.convergence(replace(runs_of_two_planners(), **change), **arguments)
-    with pytest.raises(ValueError, match=r"comparison must be a Comparison, .* got list"):
+    with pytest.raises(ValueError, match=r"comparison must be a Comparison, got list: compare_planners"):
         plot.convergence([1, 2])
 
 
@@ -491,6 +501,17 @@ def test_still_has_tracks_and_a_cross_where_one_crashed(table1, route, flights_o
         (lambda city, route: plot.tracks(city, {}, {"A*": city}), r"routes\['A\*'\] must be a Route, got City"),
         (lambda city, route: plot.crash_rates({}), "rates must hold one to 6 planners, got 0"),
         (lambda city, route: plot.crash_rates({"calm": {"A*": Rate(1, 0, 2)}}, least=0.0), "least must be"),
+        (
+            lambda city, route: plot.crash_rates({"calm": {"A*": Rate(1, 0, 2)}}, least=1000),
+            "least must be below 1,000",
+        ),
+        (lambda city, route: plot.crash_rates({"calm": Rate(1, 0, 2)}), r"rates\['calm'\] must be Rate by name"),
+        (lambda city, route: plot.crash_rates({"calm": {"A*": 2.0}}), r"rates\['calm'\]\['A\*'\] must be a Rate"),
+        (lambda city, route: plot.tracks(city, [straight_flight()]), "flights must be lists by name, .* got list"),
+        (lambda city, route: plot.tracks(city, {"a": []}, []), "routes must be a Route, got list"),
+        (lambda city, route: plot.in_flight({"a": straight_flight()}, most="28"), "most must be a number"),
+        (lambda city, route: plot.in_flight({"a": straight_flight()}, most=np.inf), "most must be finite, got inf"),
+        (lambda city, route: plot.safety_domain(np.eye(5)[:, :2], best=1.0), "best must be a SafetyDomain, got float"),
         (lambda city, route: plot.in_flight({}), "flights must hold one to 6 that flew, got 0"),
         (
             lambda city, route: plot.in_flight([fly(route, city, LIGHT_QUADROTOR, Wind((40.0, 0.0)), rng=1)]),
@@ -503,6 +524,89 @@ def test_still_has_tracks_and_a_cross_where_one_crashed(table1, route, flights_o
 def test_flights_that_cannot_be_drawn_are_refused(table1, route, draw, message):
     with pytest.raises(ValueError, match=message):
         draw(table1, route)
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (
+            lambda city: plot.section(city, 30.0, np.ones((4, 4, 4))),
+            r"values must have the city's shape \(100, 100, 100\)",
+        ),
+        (lambda city: plot.section(city, 30.0, city.occupied.astype(str)), "values must be .* got text"),
+        (lambda city: plot.section(city, 30.0, label=3), "label must be text, got 3"),
+        (lambda city: plot.section(city, 30.0, norm="log"), "norm must be a Normalize, got str: .*LogNorm"),
+        (lambda city: plot.field(city, 30.0, (50, 44, 30), area=(60, 90, 20)), r"area must have shape \(4,\)"),
+        (lambda city: plot.field(city, 30.0, (50, 44, 30), area=(90, 60, 20, 30)), "area must be .* from less to more"),
+        (lambda city: plot.field(city, 30.0, (50, 44, 30), area=(-9, 0, 0, 9)), "area must lie on the map, 0 to 100 m"),
+        (lambda city: plot.field(city, 30.0, (50, 44, 30), area=(66, 68, 20, 22)), "area must have a free point 30 m"),
+        (
+            lambda city: plot.field(city, 30.0, (50, 44, 30), spacing=0.01),
+            "spacing must be at least 0.32 m on this area",
+        ),
+        (lambda city: plot.tracks(city, {"a": []}, area=(9, 9, 0, 9)), "area must be .* from less to more"),
+        (lambda city: plot.tracks(city, {"a": []}, area=(0, np.nan, 0, 9)), "area must be finite, got nan"),
+        (lambda city: plot.still(city, elevation_deg=np.nan), "elevation_deg must be finite, got nan"),
+        (lambda city: plot.still(city, azimuth_deg="north"), "azimuth_deg must be a number"),
+        (
+            lambda city: plot.still(city, risk=reference_campus()),
+            "risk must be a map of the same city, got one of <City",
+        ),
+        (lambda city: plot.bars([1.0], "length [m]"), "values must be something by name"),
+        (lambda city: plot.bars({"a": "1"}, "length [m]"), r"values\['a'\] must be a number"),
+        (lambda city: plot.bars({"a": np.inf}, "length [m]"), "values must be finite, or NaN for no bar"),
+        (
+            lambda city: plot.bars(dict.fromkeys(map(str, range(1001)), 1.0), ""),
+            "values must be at most 1,000, got 1,001",
+        ),
+        (lambda city: plot.bars({"a": 1.0}, None), "label must be text, got None"),
+        (lambda city: plot.bars({"a": 1.0}, "", title=3), "title must be text, got 3"),
+        (lambda city: plot.front([Route([(1, 1, 1), (2, 2, 2)])]), "routes must have a cost, .* RiskMap.integral"),
+        (lambda city: plot.front([Route([(1, 1, 1)], cost=1.0)], 3), "marked must be a Route, got int"),
+        (lambda city: plot.front([Route([(1, 1, 1)], cost=1.0)], label=3), "label must be text, got 3"),
+        (lambda city: plot.draw_map(None, city, city.occupied[0], "Greys"), "axes must be an Axes, got NoneType"),
+        (lambda city: plot.ground_risk(city), "risk_map must be a RiskMap, got City"),
+        (lambda city: plot.risk_norm(city), "risk_map must be a RiskMap, got City"),
+        (lambda city: plot.finished(None), "figure must be a Figure, got NoneType"),
+        (lambda city: plot.new_figure(0, 4), "width must be finite and above 0, got 0"),
+        (lambda city: plot.new_figure(6, 1e6), "height must be from 0 to 650 inches"),
+        (lambda city: plot.route_colors(10**30), "count must be at most 1,000,000"),
+        (lambda city: plot.route_colors(-1), "count must be a whole number of at least 0, got -1"),
+    ],
+)
+def test_what_a_figure_cannot_show_is_refused_by_name(table1, draw, message):
+    with pytest.raises(ValueError, match=message):
+        draw(table1)
+
+
+@pytest.mark.parametrize(
+    ("values", "colors", "limits", "message"),
+    [
+        (np.ones((3, 3)), "Greys", {}, r"values must have shape \(100, 100\), got \(3, 3\)"),
+        (
+            np.ones((100, 100)),
+            "greyish",
+            {},
+            "colors must be a colour map of matplotlib or the name of one, got 'greyish'",
+        ),
+        (np.ones((100, 100)), 3, {}, "colors must be a colour map"),
+        (np.ones((100, 100)), "Greys", {"vmin": "0"}, "vmin must be a number"),
+        (np.ones((100, 100)), "Greys", {"vmax": np.nan}, "vmax must be finite, got nan"),
+    ],
+)
+def test_a_map_says_what_it_cannot_draw(table1, values, colors, limits, message):
+    figure, axes = plot.new_figure(4.0, 3.0)
+    with pytest.raises(ValueError, match=message):
+        plot.draw_map(axes, table1, values, colors, **limits)
+    plot.finished(figure)
+
+
+def test_what_is_masked_is_not_drawn(table1):
+    hidden = np.arange(10_000).reshape(100, 100) % 2 == 0
+    figure, axes = plot.new_figure(4.0, 3.0)
+    image = plot.draw_map(axes, table1, np.ma.masked_array(np.ones((100, 100)), hidden), "Greys")
+    plot.finished(figure)
+    assert (np.ma.getmaskarray(np.ma.masked_invalid(image.get_array())) == hidden.T).all()
 
 
 def test_a_profile_counts_heights_from_level_ground():

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from uavlab.city import City
 from uavlab.planners import astar, shortcut
-from uavlab.route import Route
+from uavlab.route import Route, as_route
 
 ZIGZAG = Route([(0, 0, 0), (3, 4, 0), (3, 4, 12), (3, 4, 12)])
 
@@ -245,12 +245,32 @@ def test_what_a_route_says_of_itself():
     assert repr(stuck) == "<Route by A*: not reached, no free way>"
 
 
+def test_a_route_keeps_plain_numbers_whatever_they_came_as():
+    route = Route(
+        [(1, 1, 1)],
+        cost=np.float32(2.5),
+        takeoff=np.int8(1),
+        min_height=np.uint8(200),
+        max_length=np.array(9),
+        reached=np.True_,
+    )
+    kept = (route.cost, route.takeoff, route.min_height, route.max_length, route.reached)
+    assert list(map(type, kept)) == [float, int, float, float, bool]
+    assert kept == (2.5, 1, 200.0, 9.0, True)
+
+
+def test_values_count_only_where_a_route_passes():
+    values = np.full((20, 5, 5), np.nan)
+    values[:, 1, 1] = 2.0
+    assert Route([(1.5, 1.5, 1.5), (8.5, 1.5, 1.5)]).integral(hallway(), values) == pytest.approx(14.0)
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
         (lambda: Route([1.0, 2.0, 3.0]), r"points must have shape \(N, 3\), got \(3,\)"),
         (lambda: Route([(1.0, 2.0)]), r"points must have shape \(N, 3\), got \(1, 2\)"),
-        (lambda: Route([(1.0, 2.0, np.nan)]), "points must be finite: a waypoint is NaN or infinite"),
+        (lambda: Route([(1.0, 2.0, np.nan)]), "points must be finite, got nan in it"),
         (lambda: Route([(1.0, np.inf, 2.0)]), "points must be finite"),
         (
             lambda: Route([(1, 1, 1), (2, 2, 2)]).integral(hallway(), np.ones((20, 5))),
@@ -260,8 +280,26 @@ def test_what_a_route_says_of_itself():
         (lambda: Route([(1, 1, 1)]).integral(hallway(), 1.0), r"got \(\)"),
         (lambda: ZIGZAG.integral(hallway(), np.ones((20, 5, 5))), "the route leaves the map"),
         (lambda: Route([(1, 1, 1), (1, 1, 5)]).integral(hallway(), np.ones((20, 5, 5))), "the route leaves the map"),
-        (lambda: ZIGZAG.resample(0), "step must be a distance in metres, above 0, got 0"),
-        (lambda: ZIGZAG.resample(-1.0), "above 0, got -1.0"),
+        (lambda: ZIGZAG.resample(0), "step must be finite and above 0, got 0"),
+        (
+            lambda: Route([(1, 1, 1), (8, 1, 1)]).integral(hallway(), np.full((20, 5, 5), np.inf)),
+            "values must be finite, got inf",
+        ),
+        (lambda: ZIGZAG.resample(1e-9), r"step must be at least 1.7e-06 m on 17 m of route, got 1e-09"),
+        (lambda: ZIGZAG.resample("1"), r"step must be a number"),
+        (lambda: Route([(1, 1, 1)], planner=None), "planner must be text, got None"),
+        (lambda: Route([(1, 1, 1)], reached="no"), "reached must be True or False, got 'no'"),
+        (lambda: Route([(1, 1, 1)], reason=3), "reason must be text, got 3"),
+        (lambda: Route([(1, 1, 1)], cost="3"), "cost must be a number"),
+        (lambda: Route([(1, 1, 1)], info=[]), "info must be a dict, got list"),
+        (lambda: Route([(1, 1, 1)], takeoff=-1), "takeoff must be a whole number of at least 0, got -1"),
+        (lambda: Route([(1, 1, 1)], landing=0.5), "landing must be a whole number of at least 0, got 0.5"),
+        (lambda: Route([(1, 1, 1)], max_height="120"), "max_height must be a number"),
+        (lambda: Route([(1, 1, 1)], max_length=None), "max_length must be a number"),
+        (lambda: Route([(1, 1, 1)], priced=True), "priced must be text, got True"),
+        (lambda: as_route(ZIGZAG, 3), "name must be text, got 3"),
+        (lambda: as_route("ZIGZAG", "way"), "way must be a Route, got str"),
+        (lambda: ZIGZAG.resample(-1.0), "above 0, got -1"),
         (lambda: ZIGZAG.resample(np.nan), "above 0, got nan"),
         (lambda: ZIGZAG.resample(np.inf), "above 0, got inf"),
     ],

@@ -102,7 +102,9 @@ def test_legend_names_the_city_and_escapes_it(route):
 
 
 def test_notebook_gets_the_page_and_a_still_picture(table1, route):
-    bundle = scene.show(table1, route)._repr_mimebundle_()
+    shown = scene.show(table1, route)
+    bundle = shown._repr_mimebundle_()
+    assert bundle["text/plain"] == repr(shown)
     assert bundle["text/html"].startswith('<div class="uavlab-scene">')  # "<iframe" first makes IPython warn
     assert base64.b64decode(bundle["image/png"]).startswith(b"\x89PNG")
 
@@ -112,11 +114,19 @@ def test_notebook_gets_the_page_and_a_still_picture(table1, route):
     [
         ({"expansion": True}, "expansion needs a first route planned with record=True"),
         ({"safe_distance": 0.0}, "safe_distance must be finite and above 0, got 0"),
+        ({"title": 3}, "title must be text, got 3"),
+        ({"expansion": "no"}, "expansion must be True or False, got 'no'"),
     ],
 )
 def test_wrong_question(table1, arguments, message):
     with pytest.raises(ValueError, match=message):
         scene.page(table1, Route(np.array([[1.0, 1, 1], [2, 2, 2]])), **arguments)
+
+
+@pytest.mark.parametrize("height", [-3, 0, 300.5, "480", True, 10_001])
+def test_a_frame_has_a_height_in_pixels(table1, height):
+    with pytest.raises(ValueError, match="height must be "):
+        scene.show(table1, height=height)
 
 
 def colors_of(command):
@@ -135,7 +145,7 @@ def test_risk_paints_the_ground_and_a_slice_on_one_scale_with_a_color_bar():
     lightness = colors_of(ground).sum(axis=1)[::6].reshape(30, 30)
     assert lightness[28, 28] > lightness[2, 2] + 0.5  # the crowded square against the park
     assert "linear-gradient" in page
-    assert "deaths per hour of flight" in page
+    assert "deaths per hour of flight (logarithmic scale)" in page
     assert len(page) < 450_000
 
 
@@ -149,7 +159,7 @@ def test_a_slice_needs_a_risk_map_and_a_height_on_it(table1):
     with pytest.raises(ValueError, match="slice_height needs risk"):
         scene.page(table1, slice_height=30.0)
     campus = reference_campus()
-    with pytest.raises(ValueError, match="height must lie on the map, 0 to 80 m"):
+    with pytest.raises(ValueError, match="slice_height must lie on the map, 0 to 80 m, got 90"):
         scene.page(campus.city, risk=campus, slice_height=90.0)
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from decimal import Decimal
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +28,9 @@ def numbers(name: str, value: npt.ArrayLike) -> np.ndarray:
             raise ValueError(f"got {NO_NUMBERS[values.dtype.kind]}, {value!r:.60}")
         if value is None:
             raise ValueError("got None")
+        texts = [item for item in values.flat if isinstance(item, str | bytes)] if values.dtype == object else []
+        if texts:
+            raise ValueError(f"got text, {texts[0]!r:.60}")
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError, OverflowError) as wrong:
         raise ValueError(f"{name} must be a number or an array of numbers: {wrong}") from wrong
@@ -42,6 +47,8 @@ def frozen(values: npt.ArrayLike, kind: npt.DTypeLike = float) -> np.ndarray:
 
 def number(name: str, value: npt.ArrayLike) -> float:
     """The argument as one float: 10 of 8 bits, times 3600, would be too much for them."""
+    if isinstance(value, float):
+        return float(value)
     values = numbers(name, value)
     if values.shape:
         raise ValueError(f"{name} must be one number, got an array of shape {values.shape}")
@@ -52,7 +59,9 @@ def whole(name: str, value: int, least: int, most: int = MOST) -> int:
     if not (isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least):
         raise ValueError(f"{name} must be a whole number of at least {least}, got {value!r}")
     if value > most:
-        raise ValueError(f"{name} must be at most {most:,}, or it never ends, got {int(value):.3g}")
+        raise ValueError(
+            f"{name} must be at most {most:,}, or it never ends, got {Decimal(int(value)).normalize():.3g}"
+        )
     return int(value)
 
 
@@ -70,31 +79,43 @@ def generator(name: str, rng: np.random.Generator | int | Sequence[int]) -> np.r
 
 
 def within(name: str, value: npt.ArrayLike, low: float, high: float, unit: str) -> None:
+    if isinstance(value, float) and low <= value <= high:  # most are, and arrays of one number take ten times as long
+        return
     values = numbers(name, value)
     refuse(values, (values >= low) & (values <= high), f"{name} must be from {low:g} to {high:g} {unit}")
 
 
 def not_negative(name: str, value: npt.ArrayLike) -> None:
+    if isinstance(value, float) and 0 <= value < np.inf:
+        return
     values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values >= 0), f"{name} must be finite and at least 0")
 
 
 def positive(name: str, value: npt.ArrayLike) -> None:
+    if isinstance(value, float) and 0 < value < np.inf:
+        return
     values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values > 0), f"{name} must be finite and above 0")
 
 
 def not_negative_number(name: str, value: npt.ArrayLike) -> float:
-    not_negative(name, one := number(name, value))
+    one = number(name, value)
+    if not 0 <= one < np.inf:
+        raise ValueError(f"{name} must be finite and at least 0, got {one:g}")
     return one
 
 
 def positive_number(name: str, value: npt.ArrayLike) -> float:
-    positive(name, one := number(name, value))
+    one = number(name, value)
+    if not 0 < one < np.inf:
+        raise ValueError(f"{name} must be finite and above 0, got {one:g}")
     return one
 
 
 def at_least_one(name: str, value: npt.ArrayLike) -> None:
+    if isinstance(value, float) and 1 <= value < np.inf:
+        return
     values = numbers(name, value)
     refuse(values, np.isfinite(values) & (values >= 1), f"{name} must be finite and at least 1")
 
@@ -137,9 +158,9 @@ def text(name: str, value: str) -> str:
     return str(value)
 
 
-def path(name: str, value: str | Path) -> Path:
+def path(name: str, value: str | PathLike[str]) -> Path:
     """The name of a file as a path; a number would be a file that is open already."""
-    if not isinstance(value, str | Path):
+    if not isinstance(value, str | PathLike) or value == "":
         raise ValueError(f"{name} must be the name of a file, got {value!r:.60}")
     return Path(value)
 
@@ -208,6 +229,15 @@ def show(point: npt.ArrayLike) -> str:
 
 MAKERS = {
     "Autopilot": "Autopilot() is the usual one",
+    "Axes": "new_figure(width, height) makes some, too",
+    "Comparison": "compare_planners(planners, maps, ...) makes one",
+    "Controller": "uavlab.resilience has BASIC and ADVANCED",
+    "Figure": "all functions of uavlab.plot give one",
+    "Gps": "Gps() is the usual one, PERFECT_GPS one without errors",
+    "Monitor": "Monitor(ConditionCheck(predicted), uav_diameter) is one",
+    "Normalize": "Normalize(vmin, vmax) and LogNorm(vmin, vmax) of matplotlib.colors are some",
+    "Rate": "crash_rate(flights) gives one",
+    "SafetyDomain": "safety_domain(samples) of uavlab.offsets gives one",
     "Flight": "fly(route, city, uav, disturbance, rng=...) makes one",
     "Flights": "monte_carlo(route, city, uav, disturbance, rng=...) makes some",
     "Conditions": "flight_conditions(load, disturbance) makes some",
@@ -242,6 +272,8 @@ def air(temperature_c: npt.ArrayLike, humidity_percent: npt.ArrayLike, pressure_
 
 
 def finite(name: str, value: npt.ArrayLike) -> None:
+    if isinstance(value, float) and -np.inf < value < np.inf:
+        return
     values = numbers(name, value)
     refuse(values, np.isfinite(values), f"{name} must be finite")
 

@@ -173,6 +173,11 @@ def profile_share(uav: UAV) -> float:
     float
         p, above 0.
 
+    Raises
+    ------
+    ValueError
+        If `uav` is no UAV.
+
     See Also
     --------
     rotor_power : takes it.
@@ -184,6 +189,7 @@ def profile_share(uav: UAV) -> float:
     >>> round(profile_share(LIGHT_QUADROTOR), 2)
     0.52
     """
+    checks.instance("uav", uav, UAV)
     return 1 / uav.figure_of_merit - INDUCED
 
 
@@ -244,8 +250,10 @@ def power_needed(
     array([179., 162., 177., 298.])
     """
     checks.instance("uav", uav, UAV)
-    checks.positive_number("air_density", air_density)
-    moving, air = checks.vectors(velocity=velocity, wind=checks.three("wind", wind)[: np.shape(velocity)[-1]])
+    rain_mm_per_h = checks.not_negative_number("rain_mm_per_h", rain_mm_per_h)
+    air_density = checks.positive_number("air_density", air_density)
+    (moving,) = checks.vectors(velocity=velocity)
+    air = np.array(checks.three("wind", wind))[: moving.shape[-1]]
     flat = np.zeros((*moving.shape[:-1], 3 - moving.shape[-1]))
     through_air = np.concatenate([moving - air, flat], axis=-1)
     thrust = -wind_drag(np.zeros(3), through_air, uav.drag_area, air_density=air_density)
@@ -310,9 +318,9 @@ def energy_per_metre(
     array([32., 77., 71.])
     """
     checks.instance("uav", uav, UAV)
-    asked = uav.cruise_speed if speed is None else speed
-    checks.positive_number("speed", asked)
-    checks.positive_number("air_density", air_density)
+    asked = uav.cruise_speed if speed is None else checks.positive_number("speed", speed)
+    rain_mm_per_h = checks.not_negative_number("rain_mm_per_h", rain_mm_per_h)
+    air_density = checks.positive_number("air_density", air_density)
     (course,) = checks.vectors(direction=direction)
     size = np.linalg.norm(course, axis=-1, keepdims=True)
     if course.shape[-1:] != (3,) or (size == 0).any():

@@ -104,8 +104,8 @@ def safe_distance(
     Raises
     ------
     ValueError
-        If `load`, `disturbance` or `reading` is none of the classes, or `load` is negative, above 1 kg for "table", or
-        more than `uav` can lift.
+        If `load`, `disturbance` or `reading` is none of the classes, `load` is negative, above 1 kg for "table", or
+        more than `uav` can lift, or `uav` is no UAV.
 
     See Also
     --------
@@ -122,6 +122,7 @@ def safe_distance(
     [5.5, 5.5]
     """
     checks.one_of("reading", reading, ("table", "physical"))
+    checks.instance("uav", uav, UAV)
     payload = payload_of(load)
     kind, wind_speed = kind_and_speed(disturbance)
     in_table = 0.0
@@ -185,7 +186,7 @@ def kind_and_speed(disturbance: str | Wind | Weather, name: str = "disturbance")
     Raises
     ------
     ValueError
-        If `disturbance` is none of the classes, and no Wind or Weather.
+        If `disturbance` is none of the classes, and no Wind or Weather; if `name` is no text.
 
     See Also
     --------
@@ -198,8 +199,9 @@ def kind_and_speed(disturbance: str | Wind | Weather, name: str = "disturbance")
     >>> kind_and_speed("mild"), kind_and_speed(Wind(mean=(3.0, 4.0)))
     (('mild', 6.0), ('mild', 5.0))
     """
+    checks.text("name", name)
     if isinstance(disturbance, str):
-        return checks.one_of(name, disturbance, DISTURBANCES), DISTURBANCES[disturbance]
+        return str(checks.one_of(name, disturbance, DISTURBANCES)), DISTURBANCES[disturbance]
     if not isinstance(disturbance, Wind | Weather):
         raise ValueError(
             f"{name} must be one of {', '.join(map(repr, DISTURBANCES))}, a Wind or a Weather, got {disturbance!r:.60}"
@@ -228,7 +230,7 @@ def gust_offset(uav: UAV, wind_speed: float) -> float:
     Raises
     ------
     ValueError
-        If `wind_speed` is negative or not finite.
+        If `uav` is no UAV, or `wind_speed` is negative or not finite.
 
     See Also
     --------
@@ -242,7 +244,8 @@ def gust_offset(uav: UAV, wind_speed: float) -> float:
     >>> [round(gust_offset(LIGHT_QUADROTOR.loaded(payload), 7.5), 1) for payload in (0.0, 0.6, 1.0)]
     [3.3, 3.8, 5.0]
     """
-    checks.not_negative_number("wind_speed", wind_speed)
+    checks.instance("uav", uav, UAV)
+    wind_speed = checks.not_negative_number("wind_speed", wind_speed)
     return float(STILL_OFFSET + STIFFNESS * gust_force(uav, wind_speed) / uav.horizontal_reserve())
 
 
@@ -266,7 +269,7 @@ def gust_force(uav: UAV, wind_speed: float) -> float:
     Raises
     ------
     ValueError
-        If `wind_speed` is not finite.
+        If `uav` is no UAV, or `wind_speed` is negative or not finite.
 
     See Also
     --------
@@ -280,6 +283,8 @@ def gust_force(uav: UAV, wind_speed: float) -> float:
     >>> [round(gust_force(LIGHT_QUADROTOR, wind), 1) for wind in (3.0, 6.0)]
     [1.0, 4.1]
     """
+    checks.instance("uav", uav, UAV)
+    wind_speed = checks.not_negative_number("wind_speed", wind_speed)
     return float(wind_drag((GUST_FACTOR * wind_speed, 0.0), (0.0, 0.0), uav.drag_area)[0])
 
 
@@ -312,7 +317,7 @@ def load_class(payload: float) -> str:
     >>> [load_class(payload) for payload in (0.0, 0.25, 0.3, 1.0)]
     ['dead', 'light', 'moderate', 'heavy']
     """
-    checks.not_negative_number("payload", payload)
+    payload = checks.not_negative_number("payload", payload)
     name = next((name for name, upper in LOADS.items() if payload <= upper), None)
     if name is None:
         raise ValueError(f"payload must be at most {LOADS['heavy']:g} kg, the heaviest class, got {payload:g}")
@@ -348,7 +353,7 @@ def disturbance_class(wind_speed: float) -> str:
     >>> [disturbance_class(wind) for wind in (1.0, 5.0, 7.5, 20.0)]
     ['none', 'mild', 'moderate', 'heavy']
     """
-    checks.not_negative_number("wind_speed", wind_speed)
+    wind_speed = checks.not_negative_number("wind_speed", wind_speed)
     return next((name for name, upper in DISTURBANCES.items() if wind_speed <= upper), "heavy")
 
 
@@ -433,8 +438,8 @@ class ConditionCheck:
 
     def __post_init__(self) -> None:
         for name in ("predicted", "step", "hold"):
-            checks.positive_number(name, getattr(self, name))
-        checks.number("release", self.release)
+            setattr(self, name, checks.positive_number(name, getattr(self, name)))
+        self.release = checks.number("release", self.release)
         checks.share("release", self.release)
 
     def __repr__(self) -> str:
@@ -477,8 +482,7 @@ class ConditionCheck:
         >>> check.log[-1].reason
         'an offset of 3.40 m exceeds 2.5 m'
         """
-        checks.not_negative_number("offset", offset)
-        checks.number("time", time)
+        offset, time = checks.not_negative_number("offset", offset), checks.number("time", time)
         checks.finite("time", time)
         if time < self.now:
             raise ValueError(f"time must not go back, got {time:g} s after {self.now:g} s")
@@ -570,6 +574,11 @@ def basic_offset(controller: Controller) -> float:
     float
         1 for the basic one.
 
+    Raises
+    ------
+    ValueError
+        If `controller` is no Controller.
+
     See Also
     --------
     Monitor.observe : counts offsets with it.
@@ -580,6 +589,7 @@ def basic_offset(controller: Controller) -> float:
     >>> basic_offset(BASIC), round(basic_offset(ADVANCED), 2)
     (1.0, 2.02)
     """
+    checks.instance("controller", controller, Controller)
     return (controller.natural_frequency / BASIC.natural_frequency) ** 1.5
 
 
@@ -612,7 +622,8 @@ class Monitor:
     Raises
     ------
     ValueError
-        If `uav_diameter`, `spare` or `hold` is not above 0, or `level` is none of `LEVELS` or "grounded".
+        If `check` is no ConditionCheck, `uav_diameter`, `spare` or `hold` is not above 0, or `level` is none of
+        `LEVELS` or "grounded".
 
     See Also
     --------
@@ -640,9 +651,10 @@ class Monitor:
     roomy_since: float = field(init=False, default=np.inf)
 
     def __post_init__(self) -> None:
+        checks.instance("check", self.check, ConditionCheck)
         for name in ("uav_diameter", "spare", "hold"):
-            checks.positive_number(name, getattr(self, name))
-        checks.one_of("level", self.level, LEVELS)
+            setattr(self, name, checks.positive_number(name, getattr(self, name)))
+        self.level = str(checks.one_of("level", self.level, LEVELS))
         if self.level == "grounded":
             raise ValueError("level is 'grounded': there is no flight to watch; wait, or carry less")
         if self.level == "advanced":
@@ -691,10 +703,9 @@ class Monitor:
         >>> monitor.log[-1].reason
         '0.50 m short of the distance to keep'
         """
-        checks.number("clearance", clearance)
+        clearance, offset = checks.number("clearance", clearance), checks.not_negative_number("offset", offset)
         if not clearance >= 0:
             raise ValueError(f"clearance must be at least 0, got {clearance!r}")
-        checks.number("offset", offset)
         boundary = self.check.observe(time, offset * basic_offset(self.controller))
         if self.level in ("off", "advanced"):
             return self.controller

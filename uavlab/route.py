@@ -17,6 +17,9 @@ from uavlab.city.segments import least_clearance
 PROMISES = ("min_clearance", "min_height", "max_height", "safe_height")
 """What routes and curves remember that they keep [m]."""
 
+MOST_WAYPOINTS = 10_000_000
+"""Of a route that is resampled; more fill the memory."""
+
 
 def check_promises(of: Any) -> None:
     """Refuse a route or a curve whose promises are out of their range.
@@ -47,7 +50,7 @@ def check_promises(of: Any) -> None:
     """
     for name in ("min_clearance", "min_height", "safe_height"):
         checks.not_negative_number(name, getattr(of, name))
-    if not of.max_height > of.min_height:
+    if not checks.number("max_height", of.max_height) > of.min_height:
         raise ValueError(f"max_height must be above min_height = {of.min_height!r}, got {of.max_height!r}")
 
 
@@ -109,6 +112,7 @@ def as_route(way: Route | Way, name: str = "route") -> Route:
     >>> as_route(Curve([(5, 5, 30), (40, 5, 30), (40, 50, 30)]))
     <Route by curve: 69.7 m, 901 waypoints>
     """
+    checks.text("name", name)
     made: Any = way
     if not isinstance(way, type) and callable(getattr(way, "route", None)):
         made = made.route()
@@ -205,14 +209,18 @@ class Route:
 
     def __post_init__(self) -> None:
         check_promises(self)
-        if not self.max_length > 0:
+        if not checks.number("max_length", self.max_length) > 0:
             raise ValueError(f"max_length must be above 0, got {self.max_length!r}")
-        points = checks.numbers("points", self.points).copy()
-        if points.ndim != 2 or points.shape[1] != 3:
-            raise ValueError(f"points must have shape (N, 3), got {points.shape}")
-        if not np.isfinite(points).all():
-            raise ValueError("points must be finite: a waypoint is NaN or infinite")
-        object.__setattr__(self, "points", points)
+        checks.instance("info", self.info, dict)
+        checked: dict[str, Any] = {
+            "points": checks.array("points", self.points, None, 3).copy(),
+            "reached": checks.flag("reached", self.reached),
+        }
+        checked |= {name: str(checks.text(name, getattr(self, name))) for name in ("planner", "reason", "priced")}
+        checked |= {name: checks.whole(name, getattr(self, name), 0) for name in ("takeoff", "landing")}
+        checked |= {name: checks.number(name, getattr(self, name)) for name in ("cost", "max_length", *PROMISES)}
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
     @classmethod
     def none(cls, planner: str, reason: str, **info: Any) -> Route:
@@ -409,10 +417,13 @@ class Route:
         39.0
         """
         checks.instance("city", city, City)
-        if np.shape(values) != city.shape:
-            raise ValueError(f"values must have the city's shape {city.shape}, got {np.shape(values)}")
+        values = values if isinstance(values, np.ndarray) else checks.numbers("values", values)
+        if values.shape != city.shape:
+            raise ValueError(f"values must have the city's shape {city.shape}, got {values.shape}")
         index, length = self.voxels(city)
-        return float(checks.numbers("values", values)[tuple(index.T)] @ length)
+        passed = checks.numbers("values", values[tuple(index.T)])
+        checks.finite("values", passed)
+        return float(passed @ length)
 
     def voxels(self, city: City) -> tuple[np.ndarray, np.ndarray]:
         """The voxels that the route passes through, in order, and its length in each.
@@ -481,8 +492,10 @@ class Route:
         >>> route.resample(10.0)
         <Route by given: 80.0 m, 10 waypoints>
         """
-        if not (np.isfinite(step) and step > 0):
-            raise ValueError(f"step must be a distance in metres, above 0, got {step!r}")
+        step = checks.positive_number("step", step)
+        if self.length > MOST_WAYPOINTS * step:
+            least = self.length / MOST_WAYPOINTS
+            raise ValueError(f"step must be at least {least:.2g} m on {self.length:.0f} m of route, got {step:g}")
         if len(self.points) < 2:
             return self
         parts = np.maximum(np.ceil(self.leg_lengths / step - 1e-9).astype(int), 1)
@@ -523,8 +536,7 @@ class Route:
         5.0,5.0,30.0,0.0
         40.0,5.0,30.0,35.0
         """
-        if not isinstance(path, str | Path):
-            raise ValueError(f"path must be the name of a file, got {path!r}")
+        checks.path("path", path)
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(["x_m", "y_m", "z_m", "distance_m"])

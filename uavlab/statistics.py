@@ -62,8 +62,7 @@ def share_interval(count: int, total: int) -> tuple[float, float]:
     """
     from scipy.stats import beta
 
-    checks.whole("total", total, least=1)
-    checks.whole("count", count, least=0)
+    total, count = checks.whole("total", total, least=1), checks.whole("count", count, least=0)
     if count > total:
         raise ValueError(f"count must be at most total = {total}, got {count}")
     low = float(beta.ppf(0.025, count, total - count + 1)) if count else 0.0
@@ -115,7 +114,7 @@ def grouped_share_interval(counts: npt.ArrayLike, trials: int) -> tuple[float, f
     >>> [round(end, 2) for end in share_interval(20, 100)]
     [0.13, 0.29]
     """
-    checks.whole("trials", trials, least=1)
+    trials = checks.whole("trials", trials, least=1)
     events = checks.numbers("counts", counts)
     if events.ndim != 1 or not len(events):
         raise ValueError(f"counts must have shape (M,), with at least one group, got {events.shape}")
@@ -215,12 +214,18 @@ def over_maps(statistic: Callable[..., Any], values: np.ndarray) -> tuple[float,
     statistic : callable
         Of an array and an `axis`, as `numpy.mean` and `numpy.median`.
     values : (M, S) array
-        S values on each of M maps.
+        S values on each of M maps; infinite ones are for medians.
 
     Returns
     -------
     (float, float)
         Of 2000 resamples, always the same ones.
+
+    Raises
+    ------
+    ValueError
+        If `values` is not of shape (M, S), empty or has NaN in it, or `statistic` is no function that returns a number
+        for each row.
 
     See Also
     --------
@@ -240,9 +245,15 @@ def over_maps(statistic: Callable[..., Any], values: np.ndarray) -> tuple[float,
     >>> [round(end) for end in over_maps(np.mean, lengths.reshape(1000, 1))]  # as if they were independent: too narrow
     [29, 30]
     """
+    checks.function("statistic", statistic, "statistic(values, axis=1)")
+    values = checks.array("values", values, None, None, finite=False)
+    if values.size == 0 or np.isnan(values).any():
+        raise ValueError(f"values must be numbers, at least one on each map, got {values!r:.60}")
     rng = np.random.default_rng(0)
     drawn = values[rng.integers(len(values), size=(RESAMPLES, len(values)))]
-    low, high = np.quantile(statistic(drawn.reshape(RESAMPLES, -1), axis=1), [0.025, 0.975], method="nearest")
+    found = statistic(drawn.reshape(RESAMPLES, -1), axis=1)
+    found = checks.array("what statistic returns, for many rows,", found, RESAMPLES, finite=False)
+    low, high = np.quantile(found, [0.025, 0.975], method="nearest")
     return float(low), float(high)
 
 
@@ -262,6 +273,11 @@ def share_over_maps(values: np.ndarray) -> tuple[float, float]:
     (float, float)
         0 to 1.
 
+    Raises
+    ------
+    ValueError
+        If `values` is not of shape (M, S), empty, or has a value that is not within 0 to 1.
+
     See Also
     --------
     over_maps : for any statistic.
@@ -274,6 +290,8 @@ def share_over_maps(values: np.ndarray) -> tuple[float, float]:
     >>> [round(end, 2) for end in share_over_maps(np.ones((12, 5)))]  # all reached on 12 maps
     [0.74, 1.0]
     """
+    values = checks.array("values", values, None, None)
+    checks.within("values", values, 0.0, 1.0, "(shares)")
     low, high = over_maps(np.mean, values)
     exact = share_interval(round(float(values.mean()) * len(values)), len(values))
     return (low, high) if low < high else (min(low, exact[0]), max(high, exact[1]))

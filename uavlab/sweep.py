@@ -14,6 +14,11 @@ import joblib
 import numpy as np
 from tqdm import tqdm
 
+from uavlab import checks
+
+MOST_JOBS = 10_000
+"""Processes; what is beyond is a mistake."""
+
 
 def sweep(
     function: Callable[..., Any],
@@ -32,7 +37,7 @@ def sweep(
     cases : iterable of mappings
         Keyword arguments of each call.
     jobs : int, optional
-        Processes, −1 for one per core. By default what `joblib.parallel_config` says, else 1.
+        Processes, −1 for one per core; at most 10,000. By default what `joblib.parallel_config` says, else 1.
     progress : bool
         Show a bar.
     unit : str
@@ -46,8 +51,9 @@ def sweep(
     Raises
     ------
     ValueError
-        If `jobs` is 0 or no whole number, or `cases` share a random generator: what one of them draws would be missing
-        in the next on one core, and not on two.
+        If `function` can't be called, `cases` are no mappings, `jobs` is 0, no whole number or above 10,000, `progress`
+        is not True or False, or `unit` is no text; if `cases` share a random generator: what one of them draws would be
+        missing in the next on one core, and not on two.
     Exception
         What `function` raises; a note says in which case.
 
@@ -62,9 +68,16 @@ def sweep(
     >>> sweep(pow, [{"base": 2, "exp": exponent} for exponent in range(5)], progress=False)
     [1, 2, 4, 8, 16]
     """
-    if jobs is not None and (not isinstance(jobs, Integral) or jobs == 0):
-        raise ValueError(f"jobs must be a number of processes, or −1 for one per core, got {jobs!r}")
-    cases = list(cases)
+    if not callable(function):
+        raise ValueError(f"function must be a function, called with a case's keyword arguments, got {function!r:.60}")
+    whole = isinstance(jobs, Integral) and not isinstance(jobs, bool)
+    if jobs is not None and not (whole and 0 < abs(jobs) <= MOST_JOBS):
+        raise ValueError(
+            f"jobs must be a number of processes, or −1 for one per core, got {jobs!r:.60}; at most {MOST_JOBS:,}"
+        )
+    checks.flag("progress", progress)
+    checks.text("unit", unit)
+    cases = checks.several("cases", cases, Mapping, least=0)
     refuse_shared_generators(cases)
     calls = (joblib.delayed(called)(function, dict(case)) for case in cases)
     backend, _ = joblib.parallel.get_active_backend()

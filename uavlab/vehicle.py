@@ -74,10 +74,10 @@ class UAV:
     Raises
     ------
     ValueError
-        If an attribute other than `name` is not one number above 0 (`payload` and `reserve`: at least 0). Only
-        `climb_speed`, `sink_speed` and `battery` may be infinite. If `max_tilt` is π/2 or more, `figure_of_merit` 0.87
-        or more, `drive_efficiency` above 1, `reserve` 1 or more, or `cruise_speed` above `top_speed`. If `thrust` can't
-        lift `mass` and `payload`.
+        If an attribute other than `name` is not one number above 0 (`payload` and `reserve`: at least 0), or `name` is
+        no text. Only `climb_speed`, `sink_speed` and `battery` may be infinite. If `max_tilt` is π/2 or more,
+        `figure_of_merit` 0.87 or more, `drive_efficiency` above 1, `reserve` 1 or more, or `cruise_speed` above
+        `top_speed`. If `thrust` can't lift `mass` and `payload`.
 
     See Also
     --------
@@ -120,12 +120,18 @@ class UAV:
     def __post_init__(self) -> None:
         for item in fields(self):
             value = getattr(self, item.name)
-            unlimited = item.name in UNLIMITED and np.ndim(value) == 0 and value == np.inf
-            if item.name == "name" or unlimited or (item.name == "fall_drag_area" and value is None):
+            checked: str | float
+            if item.name == "name":
+                checked = str(checks.text("name", value))
+            elif item.name == "fall_drag_area" and value is None:
                 continue
-            check = checks.not_negative_number if item.name in ("payload", "reserve") else checks.positive_number
-            check(item.name, value)
-        checks.as_floats(self, *(item.name for item in fields(self) if item.name != "name"))
+            elif item.name in UNLIMITED and checks.number(item.name, value) == np.inf:
+                checked = np.inf
+            elif item.name in ("payload", "reserve"):
+                checked = checks.not_negative_number(item.name, value)
+            else:
+                checked = checks.positive_number(item.name, value)
+            object.__setattr__(self, item.name, checked)
         if self.figure_of_merit >= 1 / INDUCED:
             raise ValueError(
                 f"figure_of_merit must be below {1 / INDUCED:.2f}, what losses of the induced flow leave, "
@@ -220,7 +226,7 @@ class UAV:
         >>> round(LIGHT_QUADROTOR.hover_power()), round(LIGHT_QUADROTOR.loaded(1.0).hover_power())
         (179, 386)
         """
-        checks.positive_number("air_density", air_density)
+        air_density = checks.positive_number("air_density", air_density)
         ideal = self.weight**1.5 / np.sqrt(2 * air_density * self.rotor_area)
         return float(ideal / (self.figure_of_merit * self.drive_efficiency))
 

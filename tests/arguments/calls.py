@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib import colors
 from things import (
     BREEZE,
+    CALM,
     COMPARISON,
     CURVE,
     DOMAIN,
@@ -42,6 +43,7 @@ from things import (
     SOURCE,
     SQUARE,
     START,
+    STILL,
     TERRAIN,
     TOWN,
     VEHICLE,
@@ -54,7 +56,6 @@ from things import (
     data,
     geojson_file,
     grid,
-    lonlat,
     model_file,
     monitor,
     out,
@@ -69,7 +70,6 @@ from things import (
 
 from uavlab.city import City, Place
 from uavlab.flight import Autopilot, Gps, Rate
-from uavlab.plot import new_figure
 from uavlab.prediction import FEATURES, SETTINGS
 from uavlab.resilience import ADVANCED, BASIC, Controller
 
@@ -100,12 +100,19 @@ INSIDE = {
     "sweep.called",  # of `sweep`
     "sweep.refuse_shared_generators",  # of `sweep`
     "plot.SEQUENTIAL",  # a colour map of matplotlib
+    "plot.draw_map",  # a step of figures
+    "plot.finished",  # a step of figures
+    "plot.new_figure",  # a step of figures
 }
 """No underscore, and yet nobody's but the library's own."""
 
 
 def bowl(x):
     return ((x - 0.25) ** 2).sum(axis=1)
+
+
+def changing(time):
+    return STILL if time < 1.0 else CALM
 
 
 def level(x):
@@ -230,7 +237,7 @@ CALLS = {
     },
     "city.NoFlyZone.pieces": lambda: {"self": ZONE, "low": 0.5, "high": 4.0},
     "city.Place": lambda: {"longitude": 8.5, "latitude": 47.25, "height": 400.0},
-    "city.Place.east_north": lambda: {"self": PLACE, "lonlat": np.array(lonlat((1, 2), (3, 4)))},
+    "city.Place.east_north": lambda: {"self": PLACE, "lonlat": np.array([(8.5, 47.25), (8.5009765625, 47.2509765625)])},
     "city.Place.longitude_latitude": lambda: {"self": PLACE, "points": [(1.0, 2.0), (3.0, 4.0)]},
     "city.Source.of": lambda: {"self": SOURCE, "kind": "taken"},
     "city.Source.count": lambda: {"self": SOURCE, "kind": "taken", "what": "Build"},
@@ -277,6 +284,7 @@ CALLS = {
     "flight.crash_rate": lambda: {"runs": [FLIGHTS, FLIGHTS]},
     "flight.fly": lambda: flown(number=1),
     "flight.fly: in wind": lambda: flown(number=1, disturbance=BREEZE),
+    "flight.fly: in changing air": lambda: flown(number=1, disturbance=changing),
     "flight.monte_carlo": lambda: flown(flights=3, every=0.5, jobs=1, progress=False),
     "flight.offset_sigma": lambda: {
         "uav": DRONE, "wind": BREEZE, "ground_velocity": (1.0, 0.0, 0.0), "altitude": 32.0, "controller": ADVANCED,
@@ -368,8 +376,8 @@ CALLS = {
     ),
     "planners.penalty_zone": lambda: {"city": TOWN, "safe_distance": 1.5, "penalty": 2.0, "zone": "ball"},
     "planners.potential_field": lambda: planned(
-        attraction="conic", obstacles="voxels", moves="continuous", pull=1.0, push=5.0, reach=2.0, step=0.5, max_steps=200,
-        record=False, **heights()
+        attraction="conic", obstacles="voxels", moves="continuous", pull=1.0, push=5.0, reach=2.0, step=0.5,
+        max_steps=200, record=False, **heights()
     ),
     "planners.potential_forces": lambda: {
         "city": TOWN, "points": WAY, "goal": GOAL, "attraction": "conic", "obstacles": "voxels", "pull": 1.0,
@@ -380,6 +388,10 @@ CALLS = {
     },
     "planners.repare": lambda: planned(
         load="dead", disturbance="none", uav=DRONE, reading="table", mean_offset=(0.25, 0.0, 0.0), penalty=2.0,
+        force_weight=1.0, load_weight=1.0, zone="ball", interval=1.0, as_printed=False, record=False, **heights()
+    ),
+    "planners.repare: in changing air": lambda: planned(
+        load=0.0, disturbance=changing, uav=DRONE, reading="table", mean_offset=(0.25, 0.0, 0.0), penalty=2.0,
         force_weight=1.0, load_weight=1.0, zone="ball", interval=1.0, as_printed=False, record=False, **heights()
     ),
     "planners.repare_price": lambda: {
@@ -401,20 +413,15 @@ CALLS = {
     },
     "plot.crash_rates": lambda: {"rates": {"calm": {"A*": Rate(1.0, 0.5, 2.0)}}, "least": 0.0625},
     "plot.curve_profile": lambda: {"curves": (CURVE,), "speed": 5.0, "cell": 1.0, "bank": 0.5, "max_pitch": 1.0},
-    "plot.draw_map": lambda: {
-        "axes": new_figure(4.0, 3.0)[1], "city": TOWN, "values": PLAN, "colors": "Greys", "limits": {"vmin": 0.0},
-    },
     "plot.expansions": lambda: {"city": TOWN, "routes": (SEARCHED,)},
     "plot.field": lambda: {
         "city": TOWN, "height": 2.5, "goal": GOAL, "routes": (LINE,), "area": (0.0, 12.0, 0.0, 12.0), "spacing": 3.0,
         "setting": {"push": 5.0, "reach": 2.0},
     },
-    "plot.finished": lambda: {"figure": new_figure(4.0, 3.0)[0]},
     "plot.front": lambda: {"routes": [LINE, EXACT], "marked": (LINE,), "label": "risk [1/h]"},
     "plot.ground_risk": lambda: {"risk_map": RISK},
     "plot.in_flight": lambda: {"flights": {"a": FLIGHT}, "limits": {"most": 28.0}},
     "plot.layers": lambda: {"risk_map": RISK},
-    "plot.new_figure": lambda: {"width": 4.0, "height": 3.0},
     "plot.plan": drawn,
     "plot.profile": lambda: drawn(safe_distance=0.5),
     "plot.risk": lambda: {"risk_map": RISK, "height": 2.5, "routes": (LINE,)},
@@ -518,6 +525,10 @@ CALLS = {
         "city": TOWN, "routes": (SEARCHED, {"curve": CURVE}), "safe_distance": 0.5, "expansion": False, "risk": RISK,
         "slice_height": 2.5, "flights": [FLIGHT], "title": "a town",
     },
+    "scene.page: of a search": lambda: {
+        "city": TOWN, "routes": (SEARCHED,), "safe_distance": 0.5, "expansion": True, "risk": None,
+        "slice_height": None, "flights": (), "title": None,
+    },
     "scene.show": lambda: {
         "city": TOWN, "routes": (SEARCHED, {"curve": CURVE}), "safe_distance": 0.5, "expansion": False, "risk": RISK,
         "slice_height": 2.5, "flights": {"a": FLIGHT}, "height": 300,
@@ -600,7 +611,7 @@ CALLS = {
     },
     "weather.wind_limit": lambda: {"uav": DRONE, "rain": 0.5, "air_density": 1.25, "safety_factor": 1.125},
     # route
-    "route.as_route": lambda: {"way": CURVE, "name": "curve"},
+    "route.as_route": lambda: {"way": CURVE, "name": "way"},
     "route.Route": lambda: {
         "points": WAY, "planner": "given", "reached": True, "reason": "", "cost": 25.0, "info": {}, "takeoff": 0,
         "landing": 0, "max_length": 64.0, "priced": "risk", **promised(),
@@ -633,7 +644,7 @@ CALLS = {
         "load": 0.25, "disturbance": BREEZE, "reading": "table", "uav": DRONE,
     },
     "resilience.payload_of": lambda: {"load": 0.25},
-    "resilience.kind_and_speed": lambda: {"disturbance": "mild", "name": "air"},
+    "resilience.kind_and_speed": lambda: {"disturbance": "mild", "name": "disturbance"},
     "resilience.gust_offset": lambda: {"uav": DRONE, "wind_speed": 4.0},
     "resilience.gust_force": lambda: {"uav": DRONE, "wind_speed": 4.0},
     "resilience.load_class": lambda: {"payload": 0.25},

@@ -49,8 +49,8 @@ def collected(packages: list[str]) -> tuple[list[dict], dict[str, float]]:
             else:
                 rows.append(row)
         if open_key or done.returncode:
-            rows.append({"key": open_key or package, "what": "mistake", "parameter": "?", "mistake": "?", "kind": "lost",
-                         "message": f"the process ended with {done.returncode}"})  # fmt: skip
+            lost = {"parameter": "?", "mistake": "?", "kind": "lost", "message": f"ended with {done.returncode}"}
+            rows.append({"key": open_key or package, "what": "mistake", **lost})
     return rows, seconds
 
 

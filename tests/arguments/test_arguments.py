@@ -10,8 +10,8 @@ def test_every_public_function_has_a_call():
     covered = {key.split(":")[0] for key in CALLS}
     lacking = sorted(functions().keys() - covered)
     assert not lacking, (
-        f"tests/arguments/calls.py has no call of {', '.join(lacking)}: add to CALLS one that is right, quick, and gives "
-        "a value for every parameter (or name it under INSIDE, with the reason, if nobody else is to call it)"
+        f"tests/arguments/calls.py has no call of {', '.join(lacking)}: add to CALLS one that is right, quick, and "
+        "gives a value for every parameter (or name it under INSIDE, with the reason, if nobody else is to call it)"
     )
     gone = sorted(covered - functions().keys())
     assert not gone, f"CALLS in tests/arguments/calls.py has {', '.join(gone)}, which the library no longer has"

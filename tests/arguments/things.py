@@ -39,6 +39,7 @@ VEHICLE = {
 }  # fmt: skip
 DRONE = UAV(**VEHICLE)
 BREEZE = Wind((2.0, 1.0, 0.0), "ou", 0.5, 2.0)
+STILL, CALM = Wind((1.0, 0.0, 0.0), "ou", 0.25, 2.0), Wind((0.5, 0.0, 0.0), "ou", 0.25, 2.0)
 MILD = Weather(measured_wind=2.0, forecast_wind=3.0, forecast_max_wind=4.0, wind_from_deg=90.0)
 WAY = ((1.5, 1.5, 2.5), (1.5, 9.5, 2.5), (10.5, 10.5, 3.5))
 LINE = Route(WAY, "line", cost=30.0, priced="")

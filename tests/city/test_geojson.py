@@ -410,6 +410,7 @@ def test_geographic_systems_have_degrees(geojson, name):
         (SQUARE, {"height": -3}, "height must be finite and above 0, got -3"),
         (SQUARE, {"voxels": "corners"}, "voxels must be one of 'touched', 'centres', got 'corners'"),
         (SQUARE, {"terrain": np.nan}, "terrain must be finite"),
+        (SQUARE, {"base": -1}, "base must be finite and at least 0, got -1"),
         (SQUARE, {"terrain": [1, 2]}, "terrain must be a Terrain"),
         (SQUARE, {"cell": 0.01}, r"cell=0\.01 m gives .* use a cell of at least"),
         (SQUARE, {"margin": -5}, "margin must be finite and at least 0"),

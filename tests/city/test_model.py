@@ -269,7 +269,7 @@ def test_a_vector_and_its_opposite_never_both_point_towards_the_wall(vector):
 
 @pytest.mark.parametrize("vector", [(1, 2), 3.0, (1, 2, np.nan), [(1, 2, 3)], (np.inf, 0, 0)])
 def test_what_is_no_direction_is_refused(vector):
-    with pytest.raises(ValueError, match="vector must be three finite numbers"):
+    with pytest.raises(ValueError, match=r"vector must (have shape|be finite)"):
         City(EMPTY).towards_wall(vector)
 
 
@@ -539,7 +539,7 @@ def test_a_city_keeps_what_it_was_given():
             lambda: City.from_buildings([BOX], cell=0.01, origin=(0, 0, 0), size=(10, 10, 10)),
             "cell=0.01 m gives 1000 × 1000 × 1000 voxels .* more than 500,000,000: use a cell of at least 0.0127 m",
         ),
-        (lambda: City(EMPTY).random_pairs(0, 1), "count must be at least 1, got 0"),
+        (lambda: City(EMPTY).random_pairs(0, 1), "count must be a whole number of at least 1, got 0"),
         (lambda: City(EMPTY).random_pairs(1, 1, min_clearance=-1), "min_clearance must be .* at least 0, got -1"),
         (lambda: City(EMPTY).code_of((4, 0, 0)), r"index \(4, 0, 0\) lies outside of the map of \(4, 5, 6\) voxels"),
         (lambda: City(EMPTY).code_of((0, -1, 0)), r"index \(0, -1, 0\) lies outside of the map"),
@@ -558,21 +558,62 @@ def test_a_city_keeps_what_it_was_given():
             "no 2 pairs found that are apart=5 m from each other and min_clearance=99 m",
         ),
         (lambda: City(~EMPTY).random_pairs(1, 0, apart=0), "no 1 pairs found that are apart=0 m"),
-        (lambda: City(EMPTY).random_pairs(1, 0, apart=np.nan), "no 1 pairs found that are apart=nan m"),
-        (lambda: City(EMPTY).distance((1, 1)), r"points must be finite and have shape \(..., 3\), got shape \(2,\)"),
-        (lambda: City(EMPTY).distance(np.zeros((3, 4))), r"have shape \(..., 3\), got shape \(3, 4\)"),
-        (lambda: City(EMPTY).distance(1.0), r"have shape \(..., 3\), got shape \(\)"),
+        (lambda: City(EMPTY).random_pairs(1, 0, apart=np.nan), "apart must be finite and at least 0, got nan"),
+        (lambda: City(EMPTY).random_pairs(10**6, 0), "count must be at most 100,000"),
+        (lambda: City(EMPTY).distance((1, 1)), r"points must have shape \(..., 3\), got \(2,\)"),
+        (lambda: City(EMPTY).distance(np.zeros((3, 4))), r"have shape \(..., 3\), got \(3, 4\)"),
+        (lambda: City(EMPTY).distance(1.0), r"have shape \(..., 3\), got \(\)"),
         (lambda: City(EMPTY).distance((1, np.nan, 1)), "points must be finite"),
         (lambda: City(EMPTY).distance((1, 1, np.inf)), "points must be finite"),
         (lambda: City(EMPTY).distance((1, 1, 1), -0.5), "exact_within must be .* at least 0, got -0.5"),
         (lambda: City(EMPTY).distance((1, 1, 1), np.nan), "exact_within must be .* at least 0, got nan"),
         (lambda: City(EMPTY).voxels_along([(1, 1, 1), (1, np.inf, 1)]), "points must be finite"),
+        (lambda: City(EMPTY).voxels_along([(1, 1, 1), (1e9, 1, 1)]), r"points must lie nearer to the map: .* 1e\+09"),
+        (lambda: City(EMPTY).voxels_along([(1e20, 1, 1), (1e20, 2, 1)]), "points must lie nearer to the map"),
+        (lambda: City(EMPTY + 2), "occupied must be True or False in each voxel, got 2"),
+        (lambda: City(np.ma.masked_equal(EMPTY, 0)), "occupied has masked voxels"),
+        (lambda: City(EMPTY, name=3), "name must be text, got 3"),
+        (lambda: City(EMPTY, buildings=BOX), "buildings must be a list of Building, got Building"),
+        (lambda: City(EMPTY, source="town.json"), "source must be a Source, got str"),
+        (lambda: City(EMPTY, reference="Delft"), "reference must be a number .* got text"),
+        (lambda: City(EMPTY, reference=(52.0,)), "reference must be a Place, or .* got"),
+        (lambda: City(EMPTY, reference=(4.36, 152.0)), "latitude must be from -90 to 90 degrees .* got 152"),
+        (lambda: City.from_buildings(BOX), "buildings must be a list of Building, got Building"),
+        (lambda: City.from_buildings([BOX], terrain="flat"), "terrain must be a Terrain, got str"),
+        (lambda: City.from_buildings([BOX], terrain=np.inf), "terrain must be finite, got inf"),
+        (lambda: City(EMPTY).coordinates(3), r"axis must be 0 \(east\), 1 \(north\) or 2 \(up\), got 3"),
+        (lambda: City(EMPTY).coordinates(-1), "axis must be a whole number of at least 0, got -1"),
+        (lambda: City(EMPTY).center_of((0.5, 0, 0)), "index must be whole numbers, got 0.5"),
+        (lambda: City(EMPTY).center_of(EMPTY), "index must be whole numbers, got True or False: numpy.argwhere"),
+        (lambda: City(EMPTY).index_of(2.5), "code must be whole numbers, got 2.5"),
+        (lambda: City(EMPTY).building_at([(1, 1, 1)]), r"point must have shape \(3,\), got \(1, 3\)"),
+        (lambda: City(EMPTY).zone_building(BOX), "zone must be a NoFlyZone, got Building"),
+        (lambda: City(EMPTY).blocked(min_height=5, max_height=5), r"max_height must be above min_height \(5 m\)"),
         (lambda: City(EMPTY).voxels_along([(1, 1), (1, 2)]), r"points must .* shape \(N, 3\), got .*\(2, 2\)"),
     ],
 )
 def test_bad_questions_are_refused_with_the_reason(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+
+
+@pytest.mark.parametrize("level", [5, np.int64(5), np.float32(5), np.uint8(5), np.array(5.0)])
+def test_level_ground_is_the_same_in_any_kind_of_number(level):
+    asked, city = (City.from_buildings([BOX], terrain=ground) for ground in (level, 5.0))
+    assert np.array_equal(asked.bounds, city.bounds)
+    assert np.array_equal(asked.occupied, city.occupied)
+    assert np.array_equal(asked.ground, city.ground)
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.int32, np.uint64, float])
+def test_indices_and_codes_of_few_bits_are_counted_in_many(kind):
+    city = City(np.zeros((12, 12, 12), bool))
+    index = np.array([(1, 2, 3), (11, 10, 9)])
+    assert city.code_of(index.astype(kind)).tolist() == city.code_of(index).tolist() == [171, 1713]
+    assert city.code_of(index.astype(kind), as_printed=True).tolist() == city.code_of(index, as_printed=True).tolist()
+    assert np.array_equal(city.center_of(index.astype(kind)), index + 0.5)
+    assert city.index_of(np.array([5, 50], kind)).tolist() == [[0, 0, 5], [0, 4, 2]]
+    assert len(city.random_pairs(np.uint8(3), 1, apart=2.0)) == 3
 
 
 def test_the_cell_that_a_refusal_suggests_is_accepted_by_the_limit():

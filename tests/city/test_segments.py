@@ -112,8 +112,9 @@ def test_a_city_s_segment_distance_is_in_metres_wherever_it_lies(cell, origin):
 @pytest.mark.parametrize(
     ("start", "end", "at_most", "message"),
     [
-        ((1, 1), (2, 2), 1.0, r"points must be finite and have shape"),
-        ((1, 1, np.nan), (2, 2, 2), 1.0, "points must be finite"),
+        ((1, 1), (2, 2), 1.0, r"start must have shape \(..., 3\), got \(2,\)"),
+        ((1, 1, 1), (2, 2, np.nan), 1.0, "end must be finite, got nan"),
+        (np.ones((2, 3)), np.ones((3, 3)), 1.0, "start, end and at_most must be as many, or one for all"),
         ((1, 1, 1), (2, 2, 2), -1.0, "at_most must be a distance in metres, at least 0, got -1"),
         ((1, 1, 1), (2, 2, 2), np.nan, "at_most must be a distance in metres, at least 0, got nan"),
     ],

@@ -89,6 +89,11 @@ def test_zones_are_read_with_their_limits(tmp_path):
         (lambda path: read_no_fly(geojson(path, SQUARE[:2]), FIELD), "has no polygon with an area, so no zone"),
         (lambda path: read_no_fly(geojson(path), FIELD, crs="EPSG:4326"), "doesn't know where on Earth"),
         (lambda path: read_no_fly(geojson(path), FIELD, lower=None), "lower must be the name of a property, or a h"),
+        (lambda path: read_no_fly(geojson(path), FIELD, upper="ceiling"), "upper='ceiling' is no property of any zone"),
+        (lambda path: read_no_fly(geojson(path), "town"), "city must be a City, got str"),
+        (lambda path: read_no_fly(5, FIELD), "path must be the name of a file, got 5"),
+        (lambda path: NoFlyZone(SQUARE, name=7), "name must be text, got 7"),
+        (lambda path: NoFlyZone(SQUARE).pieces(5.0, 5.0), r"high must be above low \(5 m\), got 5 m"),
         (lambda path: read_no_fly(geojson(path), FIELD, upper=[9]), "upper must be the name of a property, or"),
     ],
 )  # fmt: skip

@@ -161,6 +161,11 @@ def test_theory_gives_heavier_vehicles_smaller_offsets_and_no_gusts_none():
     assert offset_sigma(LIGHT_QUADROTOR, Wind((0, 8), "none")).tolist() == [0, 0, 0]
 
 
+def test_theory_takes_a_state_of_the_weather_for_its_wind():
+    weather = Weather(forecast_wind=5.0, forecast_max_wind=9.0, measured_wind=5.0)
+    assert (offset_sigma(LIGHT_QUADROTOR, weather) == offset_sigma(LIGHT_QUADROTOR, Wind.from_weather(weather))).all()
+
+
 @pytest.mark.parametrize("rough", [False, True])
 def test_two_steps_of_an_offset_process_are_one_of_twice_the_length(rough):
     process = OffsetProcess(0.8, rough=rough)
@@ -199,6 +204,13 @@ def test_wind_of_a_weather_blows_where_it_goes_with_three_sigma_to_the_gust():
         (lambda: OffsetProcess(1, mean=(1, 2, 3, 4)), r"mean must be two or three finite numbers"),
         (lambda: offset_sigma(LIGHT_QUADROTOR, Wind((5, 0)), ground_velocity=(5, 0)), r"the air stands still"),
         (lambda: offset_sigma(LIGHT_QUADROTOR, Wind((5, 0)), ground_velocity=(5, NAN)), r"ground_velocity must be"),
+        (lambda: offset_sigma(BASIC, Wind((5, 0))), r"uav must be a UAV, got Controller"),
+        (lambda: offset_sigma(LIGHT_QUADROTOR, LIGHT_QUADROTOR), r"wind must be a Wind, got UAV"),
+        (lambda: offset_sigma(LIGHT_QUADROTOR, Wind((5, 0)), altitude=0), r"altitude must be finite and above 0"),
+        (lambda: offset_sigma(LIGHT_QUADROTOR, Wind((5, 0)), controller=2), r"controller must be a Controller"),
+        (lambda: OffsetProcess(1, rough="no"), r"rough must be True or False, got 'no'"),
+        (lambda: OffsetProcess(1).step(0, BASIC), r"time_step must be finite and above 0, got 0"),
+        (lambda: OffsetProcess(1).step(0.02, "basic"), r"controller must be a Controller, got str"),
         (lambda: gust_spectrum(Wind((5, 0)), "fast", 5.0), r"omega must be a number or an array"),
     ],
 )
@@ -218,10 +230,10 @@ def test_rough_offsets_are_flown_in_fine_steps_only():
     rough = OffsetProcess(1.0, rough=True)
     fly(straight(), SKY, LIGHT_QUADROTOR, rough, EXACT, rng=0, time_step=0.04)
     with pytest.raises(
-        ValueError, match=r"time_step must be at most 0\.04 s for rough offsets at ω_n = 1 rad/s, or crash"
+        ValueError, match=r"time_step must be at most 0\.04 s, for rough offsets at ω_n = 1 rad/s, or crash"
     ):
         fly(straight(), SKY, LIGHT_QUADROTOR, rough, EXACT, rng=0, time_step=0.05)
     tight = replace(EXACT, controller=ADVANCED)
-    with pytest.raises(ValueError, match=r"time_step must be at most 0\.025 s for rough offsets at ω_n = 1\.6 rad/s"):
+    with pytest.raises(ValueError, match=r"time_step must be at most 0\.025 s, for rough offsets at ω_n = 1\.6 rad/s"):
         fly(straight(), SKY, LIGHT_QUADROTOR, rough, tight, rng=0, time_step=0.03)
     fly(straight(), SKY, LIGHT_QUADROTOR, OffsetProcess(1.0), EXACT, rng=0, time_step=0.2)

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.stats import chisquare
-from test_least_risk import (
+from risk_references import (
     ANY_LIMITS,
     OFFSETS,
     ROUND_THE_BEND,
@@ -24,6 +23,7 @@ from test_least_risk import (
     prices,
     random_case,
 )
+from scipy.stats import chisquare
 
 from uavlab.city import Building, City
 from uavlab.planners import ant_colony, ants, least_risk
@@ -31,7 +31,6 @@ from uavlab.planners import risk_question as question
 from uavlab.planners.ant_colony import OURS
 from uavlab.planners.grid import MOVES
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
-from uavlab.spline.limits import MAX_PITCH
 
 
 def pheromone(least, first, most):
@@ -226,7 +225,7 @@ def test_maps_above_have_ants_that_arrive_and_ants_that_get_stuck():
 
 def ground_of(risk_map, ends, habits, **changed):
     """What ants find before any has walked; none counts as long ago as −9."""
-    limits = question.checked_limits(risk_map, question.MAX_TURN, MAX_PITCH, 0.0, None, np.inf)
+    limits = question.checked_limits(risk_map, question.MAX_TURN, question.MAX_TURN, 0.0, None, np.inf)
     price = question.price_per_cell(risk_map, question.Weights())
     query = question.query_of(risk_map, price, *(code(risk_map, end) for end in ends), limits)
     nodes = query.blocked.size

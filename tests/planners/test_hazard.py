@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_astar import additive_cost, cheapest_by_scipy, is_legal
+from grid_references import additive_cost, cheapest_by_scipy, is_legal
 
 from uavlab.city import City
 from uavlab.offsets import crossing_rate

@@ -1,6 +1,5 @@
 """The exact planner against SciPy's Dijkstra over states, against exhaustive search, and against its own words."""
 
-import importlib
 import itertools
 import re
 import subprocess
@@ -10,37 +9,36 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from risk_references import (
+    ANY_LIMITS,
+    OFFSETS,
+    ROUND_THE_BEND,
+    THROUGH_THE_WALL,
+    WEIGHTS,
+    allowed,
+    angle_between,
+    campus,
+    code,
+    corridor,
+    cost_along,
+    keeps_limits,
+    made_of,
+    prices,
+    random_case,
+)
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from uavlab.city import Building, City
 from uavlab.planners import least_risk, pareto_front
+from uavlab.planners import risk_question as question
+from uavlab.planners import risk_search as search
 from uavlab.planners.heap import open_list
-from uavlab.planners.risk_question import MAX_TURN, edge
-from uavlab.planners.risk_search import NOWHERE, rest_of_cost, search_labels, search_states
-from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
+from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
 from uavlab.spline.limits import MAX_PITCH
 
-module = importlib.import_module("uavlab.planners.least_risk")  # the package gives the function this name
-
-OFFSETS = [offset for offset in itertools.product((-1, 0, 1), repeat=3) if any(offset)]
 COMPASS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
 UNDECIDED = len(COMPASS)  # the heading before the first leg that isn't vertical
-ANY_LIMITS = {"max_turn": np.pi, "max_pitch": np.pi / 2}
-WEIGHTS = [
-    {},
-    {"risk_weight": 0.0, "length_weight": 1.0},
-    {"risk_weight": 0.0, "threat_weight": 1.0},
-    {"risk_weight": 0.0, "length_weight": 0.5, "threat_weight": 0.2},
-    {"risk_weight": 1e6, "length_weight": 0.3, "threat_weight": 0.1},
-    {"drift": True},
-    {"risk_weight": 3e6, "length_weight": 0.1, "drift": True},
-]
-
-
-def angle_between(one, other):
-    """Between two directions in the plane [rad], by the scalar product."""
-    return np.arccos(np.clip(np.dot(one, other) / np.linalg.norm(one) / np.linalg.norm(other), -1, 1))
 
 
 def headings_after(heading, offset, max_turn):
@@ -71,17 +69,6 @@ def ways(flyable, max_turn, max_pitch):
     return tuple(np.concatenate(parts) if parts else np.empty(0, int) for parts in (before, after, moves))
 
 
-def prices(risk_map, *, risk_weight=1.0, length_weight=0.0, threat_weight=0.0, drift=False):
-    """Cost per cell, one row for each offset (26, nodes)."""
-    rate = risk_map.rate_ahead if drift else np.broadcast_to(risk_map.rate, (26, *risk_map.city.shape))
-    threats = risk_map.threat if threat_weight else 0.0
-    return (risk_weight * rate + length_weight * risk_map.city.cell + threat_weight * threats).reshape(26, -1)
-
-
-def allowed(risk_map, min_clearance=0.0):
-    return risk_map.flyable & (risk_map.city.clearance >= min_clearance - 1e-9)
-
-
 def costs_of(moves, price):
     """Cost of each of the moves that `ways` gives: half of the way in each voxel."""
     before, after, number = moves
@@ -92,48 +79,6 @@ def cheapest_by_scipy(moves, price, source, target):
     states = 9 * price.shape[1]
     graph = coo_array((costs_of(moves, price), moves[:2]), shape=(states, states)).tocsr()
     return dijkstra(graph, indices=9 * source + UNDECIDED)[9 * target : 9 * target + 9].min()
-
-
-def random_map(rng):
-    """A small map with buildings, floating voxels, and layers of all kinds; in places there is nobody at all."""
-    shape = rng.integers(3, 9, 3)
-    cell, origin = rng.uniform(0.5, 5), rng.uniform(-100, 100, 3)
-    buildings = []
-    for number in range(rng.integers(1, 4)):
-        low = origin[:2] + rng.uniform(0, 0.8, 2) * shape[:2] * cell
-        (x0, y0), (x1, y1) = low, low + rng.uniform(1, 2.5, 2) * cell
-        outline = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-        top = origin[2] + rng.uniform(0.5, 1.0) * shape[2] * cell
-        buildings.append(Building.prism(outline, top, bottom=origin[2], name=f"block {number}"))
-    solid = City.from_buildings(buildings, cell=cell, origin=origin, size=shape * cell).occupied
-    city = City(solid | (rng.random(shape) < rng.uniform(0, 0.3)), cell, origin, tuple(buildings))
-    return RiskMap(
-        city,
-        10 ** rng.uniform(-4, -1.5, shape[:2]) * (rng.random(shape[:2]) >= 0.2),
-        rng.choice((0, 0.25, 0.5, 0.75, 1), shape[:2]),
-        rng.random(shape[:2]) * 1e-4 * (rng.random(shape[:2]) < 0.3),
-        safe_height=rng.choice((0.0, 1.0, 2.0)) * cell,
-        min_height=rng.choice((0.0, 1.0)) * cell,
-    )
-
-
-def random_case(seed):
-    """A random map, limits, and a start and a goal that keep them."""
-    rng = np.random.default_rng(seed)
-    while True:
-        risk_map = random_map(rng)
-        limits = {
-            "max_turn": np.radians(rng.choice((0, 45, 60, 90, 135, 180))),
-            "max_pitch": np.radians(rng.choice((0, 36, 45, 60, 90, 90))),
-            "min_clearance": rng.choice((0.0, 0.0, 0.5, 1.0)) * risk_map.city.cell,
-        }
-        free = np.argwhere(allowed(risk_map, limits["min_clearance"]))
-        if len(free) > 1:
-            return risk_map, limits, risk_map.city.center_of(rng.permutation(free)[:2])
-
-
-def code(risk_map, point):
-    return int(risk_map.city.code_of(risk_map.city.cell_of(point)))
 
 
 @pytest.mark.parametrize("seed", range(100))
@@ -165,30 +110,6 @@ def test_maps_above_ask_for_all_kinds_of_routes():
     assert min(bent, steep, clear, long) >= 10
 
 
-def keeps_limits(risk_map, route, *, max_turn, max_pitch, min_clearance=0.0):
-    """Whether all voxels along the route, and all of the boxes of its moves, may be flown, and all angles kept."""
-    city, free = risk_map.city, allowed(risk_map, min_clearance)
-    index = city.cell_of(route.points)
-    boxes = [
-        free[tuple(slice(min(a, b), max(a, b) + 1) for a, b in zip(here, there, strict=True))].all()
-        for here, there in itertools.pairwise(index.tolist())
-    ]
-    return (
-        free[tuple(city.voxels_along(route.points)[0].T)].all()
-        and all(boxes)
-        and np.array_equal(route.points, city.center_of(index))
-        and (np.abs(np.diff(index, axis=0)).max(axis=1) == 1).all()
-        and (route.turn <= max_turn + 1e-9).all()
-        and (np.abs(route.pitch) <= max_pitch + 1e-9).all()
-    )
-
-
-def cost_along(risk_map, route, *, risk_weight=1.0, length_weight=0.0, threat_weight=0.0, drift=False):
-    """w_r·∫ r ds/dx + w_l·L + w_s·∫ threat ds/dx, measured on the route."""
-    threats = route.integral(risk_map.city, risk_map.threat) / risk_map.city.cell
-    return risk_weight * risk_map.integral(route, drift=drift) + length_weight * route.length + threat_weight * threats
-
-
 @pytest.mark.parametrize("seed", range(60))
 def test_route_keeps_the_limits_and_costs_what_is_measured_on_it(seed):
     risk_map, limits, ends = random_case(seed)
@@ -214,11 +135,6 @@ def test_campus_routes_keep_the_limits_and_cost_what_is_measured_on_them(number,
         route = least_risk(risk_map, *CAMPUS_FLIGHT, **limits, drift=drift)
         assert keeps_limits(risk_map, route, **limits)
         assert route.cost == pytest.approx(cost_along(risk_map, route, drift=drift), rel=1e-9)
-
-
-def campus(number):
-    """The reference campus, number 0, and random ones."""
-    return random_campus(number) if number else reference_campus()
 
 
 def test_sixty_degrees_allow_45_and_no_more():
@@ -256,10 +172,10 @@ def test_looking_back_from_the_goal_saves_four_expansions_of_five():
 @pytest.mark.parametrize("number", range(8))
 def test_second_search_walks_almost_straight_to_the_goal(number):
     risk_map = campus(number)
-    limits = module.checked_limits(risk_map, MAX_TURN, MAX_PITCH, 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, module.Weights())
-    query = module.query_of(risk_map, price, *(code(risk_map, end) for end in CAMPUS_FLIGHT), limits)
-    _, nodes = rest_of_cost(query, query.source, open_list(query.blocked.size))
+    limits = question.checked_limits(risk_map, question.MAX_TURN, MAX_PITCH, 0.0, None, np.inf)
+    price = question.price_per_cell(risk_map, question.Weights())
+    query = question.query_of(risk_map, price, *(code(risk_map, end) for end in CAMPUS_FLIGHT), limits)
+    _, nodes = search.rest_of_cost(query, query.source, open_list(query.blocked.size))
     route = least_risk(risk_map, *CAMPUS_FLIGHT)
     assert len(route.points) - 1 <= route.info["expanded"] - nodes < 0.03 * nodes
 
@@ -423,19 +339,6 @@ def test_over_a_lake_equal_risk_means_the_shorter_way():
     assert crossing.length < 1.02 * nudged.length
 
 
-def made_of(occupied, **heights):
-    """Voxels of 2 m, one person per 100 m², and no heights to keep but the given ones."""
-    return RiskMap(City(occupied, 2.0), 0.01, 0.5, **({"safe_height": 0.0} | heights))
-
-
-def corridor(*, basement=False, **heights):
-    """One voxel wide and high, to the east, then north; with a basement everything below is free."""
-    occupied = np.ones((6, 3, 2 if basement else 1), bool)
-    occupied[:, 0, -1] = occupied[5, :, -1] = False
-    occupied[..., :-1] = False
-    return made_of(occupied, **heights)
-
-
 def shaft(*, bend=False):
     """Two floors joined by a hole of a single voxel; the lower one is whole, or a corridor with a bend."""
     occupied = np.zeros((6, 3, 3), bool)
@@ -462,7 +365,6 @@ def tunnel(**heights):
     return made_of(occupied, **heights)
 
 
-ROUND_THE_BEND, THROUGH_THE_WALL = ((1, 1, 1), (11, 5, 1)), ((1, 7, 7), (17, 7, 7))
 NOT_ARRIVING = {
     "bend": (corridor(), ROUND_THE_BEND, {}, ["max_turn=90°"]),
     "no turn": (made_of(np.zeros((3, 3, 1), bool)), ((1, 1, 1), (3, 5, 1)), {"max_turn": 0.0}, ["max_turn=45°"]),
@@ -699,33 +601,33 @@ def test_ends_may_lie_anywhere_in_their_voxels():
 @pytest.mark.parametrize("seed", [1, 3])
 def test_compiled_and_plain_python_agree(seed, drift):
     risk_map, ends, limits, best = constrained_case(seed)
-    kept = module.checked_limits(risk_map, limits["max_turn"], limits["max_pitch"], 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, module.Weights(drift=drift))
-    query = module.query_of(risk_map, price, *(code(risk_map, end) for end in ends), kept)
-    by_length, count = module.city_lengths(query), query.blocked.size
+    kept = question.checked_limits(risk_map, limits["max_turn"], limits["max_pitch"], 0.0, None, np.inf)
+    price = question.price_per_cell(risk_map, question.Weights(drift=drift))
+    query = question.query_of(risk_map, price, *(code(risk_map, end) for end in ends), kept)
+    by_length, count = question.city_lengths(query), query.blocked.size
 
-    def run(search, *arguments):
-        return search(*arguments), search.py_func(*arguments)
+    def run(name, *arguments):
+        return getattr(search, name)(*arguments), getattr(search, name).py_func(*arguments)
 
     rests = []
-    for question in (query, by_length):
-        for until in (question.source, NOWHERE):
-            fast, plain = run(rest_of_cost, question, until, open_list(count))
+    for asked in (query, by_length):
+        for until in (asked.source, search.NOWHERE):
+            fast, plain = run("rest_of_cost", asked, until, open_list(count))
             assert np.array_equal(fast[0], plain[0])
             assert fast[1] == plain[1] > 10
             rests.append(fast[0])
     trees = []
-    for search in (search_states, search_states.py_func):
+    for searched in (search.search_states, search.search_states.py_func):
         g, parent = np.empty(count * 9), np.zeros(count * 9, np.uint8)
-        found = search(query, rests[0], g, parent, open_list(count * 9))
+        found = searched(query, rests[0], g, parent, open_list(count * 9))
         trees.append((*found, g[parent > 0].tolist(), parent.tolist()))
     assert trees[0] == trees[1]
     limits_in_cells = np.array([length for _, length in best]) / risk_map.city.cell
-    fast, plain = run(search_labels, query, module.city_lengths(query), rests[1], rests[3], limits_in_cells)
+    fast, plain = run("search_labels", query, question.city_lengths(query), rests[1], rests[3], limits_in_cells)
     for a, b in zip(fast, plain, strict=True):
         assert np.array_equal(a, b)
     assert len(fast[3]) >= 1
-    assert len({f(query, 3, 1, 2) for f in (edge, edge.py_func)}) == 1
+    assert len({f(query, 3, 1, 2) for f in (question.edge, question.edge.py_func)}) == 1
 
 
 EVEN = """

@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
-from test_astar import additive_cost, cheapest_by_scipy, is_legal
+from grid_references import additive_cost, cheapest_by_scipy, is_legal
 
 from uavlab.city import City
 from uavlab.planners import astar, flight_conditions, penalty_zone, potential_field, repare, repare_price

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_least_risk import campus, made_of
+from risk_references import campus, made_of
 
 from uavlab.city import City
-from uavlab.planners import ant_colony, least_risk, refine, waypoint_swarm
+from uavlab.planners import ant_colony, curves, least_risk, refine, waypoint_swarm
+from uavlab.planners import risk_question as question
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 from uavlab.route import Route
 from uavlab.spline import cubic_bspline
@@ -133,20 +134,20 @@ def test_same_seed_same_route_and_the_global_state_is_left_alone():
     assert np.array_equal(before, np.random.get_state()[1])  # noqa: NPY002
 
 
-RISK = module.Weights()
+RISK = question.Weights()
 
 
 def ends_of(risk_map, *ends):
-    limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
-    return module.flyable_endpoints(risk_map, *ends, limits)
+    limits = question.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
+    return question.flyable_endpoints(risk_map, *ends, limits)
 
 
 def near(risk_map, route, waypoints=7):
     """What the curve near a route costs; infinite if it breaks a limit."""
     points = (route.points - risk_map.city.origin) / risk_map.city.cell
-    limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, module.Weights())
-    task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, RISK, limits, True)
+    limits = question.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
+    price = question.price_per_cell(risk_map, question.Weights())
+    task = curves.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, RISK, limits, True)
     cost = task.costs(task.nearest(points, waypoints + 2)[None], 8)[0]
     return cost if cost < task.unflyable else np.inf
 
@@ -201,15 +202,15 @@ def test_an_initial_route_must_lead_from_start_to_goal():
 def test_points_on_planes_stay_on_the_map_and_reach_its_walls():
     city = City(np.zeros((20, 12, 6), bool), 2.0)
     risk_map = RiskMap(city, 0.01, 0.5, safe_height=0.0)
-    limits = module.checked_limits(risk_map, np.pi, np.pi / 2, 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, module.Weights())
+    limits = question.checked_limits(risk_map, np.pi, np.pi / 2, 0.0, None, np.inf)
+    price = question.price_per_cell(risk_map, question.Weights())
     for ends in (
         ((3, 3, 3), (37, 21, 9)),
         ((3, 11, 3), (37, 11, 3)),
         ((9, 11, 1), (9, 11, 11)),
         ((37, 3, 3), (31, 21, 9)),
     ):
-        task = module.task_of(risk_map, ends_of(risk_map, *ends), price, RISK, limits, True)
+        task = curves.task_of(risk_map, ends_of(risk_map, *ends), price, RISK, limits, True)
         space = module.space_of(task, 5, "planes")
         corners = np.array(list(itertools.product((0, 1), repeat=2)))
         low, high = space.bounds.reshape(5, 2, 2)[..., 0], space.bounds.reshape(5, 2, 2)[..., 1]
@@ -224,9 +225,9 @@ def test_points_on_planes_stay_on_the_map_and_reach_its_walls():
 
 def test_arcs_are_curves_on_the_map_that_bend_to_both_sides():
     risk_map = campus(0)
-    limits = module.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
-    price = module.price_per_cell(risk_map, module.Weights())
-    task = module.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, RISK, limits, True)
+    limits = question.checked_limits(risk_map, np.pi / 3, np.pi / 3, 0.0, None, np.inf)
+    price = question.price_per_cell(risk_map, question.Weights())
+    task = curves.task_of(risk_map, ends_of(risk_map, *CAMPUS_FLIGHT), price, RISK, limits, True)
     arcs = module.arcs_between(task, 7, 2000, np.random.default_rng(0))
     assert arcs.shape == (2000, 9, 3)
     assert (arcs[:, 0] == task.source).all()

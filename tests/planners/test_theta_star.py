@@ -4,9 +4,9 @@ import itertools
 
 import numpy as np
 import pytest
+from line_references import random_case, touches_obstacle
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
-from test_shortcut import random_case, touches_obstacle
 
 from uavlab.city import City, NoFlyZone
 from uavlab.city.bounds import bounds_of, keeps

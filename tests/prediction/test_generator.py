@@ -166,7 +166,7 @@ def test_bayes_accuracy_falls_with_the_noise():
         (lambda: median_offsets(weather(humidity_percent=120.0), UAV), "humidity_percent must be from 0 to 100 %"),
         (
             lambda: median_offsets(CALM.rename(columns={"radiation": "sun", "wind_speed": "wind"}), UAV),
-            "features lack wind_speed, radiation; unknown: wind, sun",
+            "weather must have wind_speed, radiation; unknown: wind, sun",
         ),
         (
             lambda: median_offsets(pd.concat([CALM] * 4, ignore_index=True).assign(

@@ -207,9 +207,9 @@ def test_missing_and_unknown_columns_are_listed(predictor, some):
     features, offsets = some
     renamed = features.rename(columns={"wind_speed": "wind", "radiation": "ghi"})
     for call in (predictor.predict_class, predictor.predict_sigma, lambda table: OffsetPredictor().fit(table, offsets)):
-        with pytest.raises(ValueError, match="features lack wind_speed, radiation; unknown: wind, ghi"):
+        with pytest.raises(ValueError, match="features must have wind_speed, radiation; unknown: wind, ghi"):
             call(renamed)
-    with pytest.raises(ValueError, match=r"features lack radiation$"):
+    with pytest.raises(ValueError, match=r"features must have radiation$"):
         predictor.predict_class(features.drop(columns="radiation"))
     with pytest.raises(ValueError, match=r"features must be a table with the columns temperature_c, .*, got ndarray"):
         predictor.predict_class(features.to_numpy())
@@ -254,7 +254,7 @@ def test_last_class_is_a_least_value(predictor, data):
 
 def test_missing_package_says_how_to_install_it():
     with pytest.raises(ImportError, match=r'needs no_such_package: pip install "uavlab\[prediction\]"'):
-        require("no_such_package")
+        require("no_such_package", "prediction")
 
 
 def test_importing_the_package_does_not_import_xgboost():
@@ -272,7 +272,7 @@ def test_without_xgboost_the_error_is_clear(some):
         "MODELS['XGBClassifier'](data)"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert 'ImportError: uavlab.prediction needs xgboost: pip install "uavlab[prediction]"' in run.stderr
+    assert 'ImportError: this needs xgboost: pip install "uavlab[prediction]"' in run.stderr
 
 
 def test_north_wind_is_no_news(recwarn):

@@ -205,6 +205,11 @@ def test_lethal_area_close_to_the_ground_is_the_disc():
     assert lethal_area(0.5, 16.0, fall_speed(0.5)) == pytest.approx(disc + 2 * REACH * glide)
 
 
+def test_numbers_of_8_bits_are_numbers():
+    assert impact_energy(1.5, np.uint8(16), np.uint8(20)) == impact_energy(1.5, 16.0, 20.0)
+    assert ballistic_fall(np.uint8(30), speed=np.uint8(16)) == ballistic_fall(30.0, speed=16.0)
+
+
 def test_lethal_area_broadcasts():
     assert lethal_area(np.full((2, 1), 30.0), 16.0, fall_speed([10.0, 20.0, 30.0])).shape == (2, 3)
     assert lethal_area(30.0, 0.0, 0.0) == pytest.approx(np.pi * REACH**2)
@@ -218,6 +223,11 @@ def test_lethal_area_broadcasts():
         (lambda: fall_speed("30"), "height must be a number .* got text, '30'"),
         (lambda: fall_speed(3, air_density=0), "air_density must be finite and above 0, got 0"),
         (lambda: terminal_speed(air_density=-1), "air_density must be finite and above 0, got -1"),
+        (lambda: terminal_speed(air_density=[1.0, 1.2]), r"air_density must be one number, got .* shape \(2,\)"),
+        (lambda: fall_speed(30, air_density=np.ones(3)), r"air_density must be one number, got .* shape \(3,\)"),
+        (lambda: ballistic_fall(30, pitch=[0.1]), r"pitch must be one number, got an array of shape \(1,\)"),
+        (lambda: impact_energy([1, 2], 1, 1), r"mass must be one number, got an array of shape \(2,\)"),
+        (lambda: lethal_area(1, 1, 1, [0.5]), r"uav_diameter must be one number, got an array of shape \(1,\)"),
         (lambda: ballistic_fall(-1), "height must be from 0 to 50000 m, got -1"),
         (lambda: ballistic_fall(np.inf), "height must be from 0 to 50000 m, got inf"),
         (lambda: ballistic_fall(3, speed=-16), "speed must be finite and at least 0, got -16"),

@@ -334,6 +334,7 @@ NOWHERE = Route(np.empty((0, 3)), reached=False, reason="walled in")
         (lambda: LAYERED.cell_sum([OUTSIDE]), "route must be a Route, got list"),
         (lambda: LAYERED.fatalities(None), "route must be a Route, got NoneType"),
         (lambda: LAYERED.integral(NOWHERE), "route must be one that was found .*, got none: walled in"),
+        (lambda: LAYERED.integral(Route([(5, 5, 5)]), drift="False"), "drift must be True or False, got 'False'"),
         (lambda: LAYERED.integral(NOWHERE, drift=True), "route must be one that was found"),
         (lambda: LAYERED.cell_sum(NOWHERE), "route must be one that was found"),
         (lambda: LAYERED.fatalities(NOWHERE), "route must be one that was found"),

@@ -111,6 +111,7 @@ def test_weights_are_those_of_the_papers():
     ("call", "message"),
     [
         (lambda: building_threat(ONE, constant=-1), "constant must be finite and at least 0, got -1"),
+        (lambda: building_threat(ONE, constant=[100, 200]), "constant must be one number"),
         (lambda: building_threat(ONE, constant=np.nan), "constant must be finite and at least 0, got nan"),
         (lambda: building_threat(City(ONE.occupied)), "city must know its buildings, .* use read_geojson or City"),
         (lambda: printed_threat(Route([(1, 1, 1)]), City(ONE.occupied)), "a city that knows its buildings"),

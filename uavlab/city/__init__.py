@@ -11,7 +11,8 @@ from uavlab.city.source import Source
 from uavlab.city.table1 import table1_buildings, table1_city
 from uavlab.city.terrain import Terrain
 from uavlab.city.voxel_map import read_voxels
-from uavlab.city.zones import NoFlyZone, read_no_fly
+from uavlab.city.zone_files import read_no_fly
+from uavlab.city.zones import NoFlyZone
 
 __all__ = [
     "Building",

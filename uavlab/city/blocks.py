@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import shapely
 
-from uavlab import checks
 from uavlab.city.buildings import THINNEST, polygons_in
 from uavlab.city.footprints import Footprint
 from uavlab.city.heights import Heights
@@ -26,9 +25,6 @@ MOST_SAMPLES = 100
 
 STEEP = 10.0
 """A building whose foot is farther above the ground [m] hardly stands on it."""
-
-LEVEL = (int, float, np.integer, np.floating)
-"""Kinds of numbers that say how high level ground is."""
 
 
 class Block(NamedTuple):
@@ -111,16 +107,16 @@ def check_size(blocks: Sequence[Block], system: System | None) -> None:
     check_extent(bounds, advice + farthest)
 
 
-def ground_below(blocks: Sequence[Block], from_sea: bool, terrain: Any, place: Place | None) -> Terrain | float:
+def ground_below(
+    blocks: Sequence[Block], from_sea: bool, terrain: Terrain | Path | float | None, place: Place | None
+) -> Terrain | float:
     """The ground on the map, above the height of the place [m]."""
     height = 0.0 if place is None else place.height
     if terrain is None:
         return ground_through_feet(blocks, height) if from_sea else -height
-    if isinstance(terrain, LEVEL):
-        checks.finite("terrain", terrain)
-        return float(terrain) - height
-    surface = read_terrain(terrain) if isinstance(terrain, str | Path) else terrain
-    checks.instance("terrain", surface, Terrain)
+    if isinstance(terrain, float):
+        return terrain - height
+    surface = terrain if isinstance(terrain, Terrain) else read_terrain(terrain)
     return shifted(surface, height) if surface.system is None else surface.placed(place)
 
 

@@ -7,7 +7,7 @@ courtyard) is a union of pieces. Footprints of any shape are cut into triangles.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -59,7 +59,8 @@ class Building:
     Raises
     ------
     ValueError
-        If `pieces` is empty, or one of them hasn't shape (M, 3), has a corner that is not finite, or has no volume.
+        If `pieces` is no list of arrays, or empty; one of them hasn't shape (M, 3), has a corner that is not finite, or
+        has no volume; or `name` or `color` is no text.
 
     See Also
     --------
@@ -82,14 +83,16 @@ class Building:
     color: str = "lightsteelblue"
 
     def __post_init__(self) -> None:
-        pieces = tuple(checks.frozen(piece) for piece in self.pieces)
+        checks.text("name", self.name)
+        checks.text("color", self.color)
+        if isinstance(self.pieces, str | Mapping) or not isinstance(self.pieces, Iterable):
+            raise ValueError(f"pieces must be a list of arrays of corners (M, 3), got {type(self.pieces).__name__}")
+        pieces = tuple(
+            checks.frozen(checks.array(f"pieces[{number}] of {self.name!r}", piece, None, 3))
+            for number, piece in enumerate(self.pieces)
+        )
         if not pieces:
             raise ValueError(f"pieces of {self.name!r} is empty: give at least one array of corners")
-        for piece in pieces:
-            if piece.ndim != 2 or piece.shape[1] != 3:
-                raise ValueError(f"pieces of {self.name!r} must have shape (M, 3), got {piece.shape}")
-            if not np.isfinite(piece).all():
-                raise ValueError(f"pieces of {self.name!r} have a corner that is NaN or infinite")
         object.__setattr__(self, "pieces", pieces)
         self.hulls  # noqa: B018  a piece without volume is refused now, not when it is drawn
 
@@ -118,7 +121,7 @@ class Building:
         Raises
         ------
         ValueError
-            If `corners` hasn't shape (M, 3), is not finite, or spans no volume.
+            If `corners` hasn't shape (M, 3), is not finite, or spans no volume, or `name` or `color` is no text.
 
         See Also
         --------
@@ -134,7 +137,7 @@ class Building:
         >>> pyramid.contains([[5, 5, 9], [1, 1, 9]]).tolist()
         [True, False]
         """
-        return cls((np.asarray(corners, dtype=float),), name, color)
+        return cls((checks.array("corners", corners, None, 3),), name, color)
 
     @classmethod
     def roofed(
@@ -170,8 +173,8 @@ class Building:
         Raises
         ------
         ValueError
-            If `footprint` is no simple convex polygon, `eaves` is not above `bottom`, or `ridge` hasn't shape (R, 3) or
-            is not finite.
+            If `footprint` is no simple convex polygon of shape (M, 2), `eaves` is not above `bottom`, one of them is
+            not finite, `ridge` hasn't shape (R, 3) or is not finite, or `name` or `color` is no text.
 
         See Also
         --------
@@ -187,11 +190,11 @@ class Building:
         >>> house.contains([[4, 3, 7.5], [4, 0.5, 7.5]]).tolist()
         [True, False]
         """
-        if not eaves > bottom:
-            raise ValueError(f"eaves of {name!r} must be above its bottom ({bottom:g} m), got {eaves:g} m")
-        points = np.atleast_2d(np.asarray(ridge, dtype=float))
-        if points.ndim != 2 or points.shape[1] != 3:
+        bottom, eaves = checked_ends(bottom, "eaves", eaves, name)
+        points = np.atleast_2d(checks.numbers("ridge", ridge))
+        if points.ndim != 2 or points.shape[1] != 3 or not len(points):
             raise ValueError(f"ridge of {name!r} must have shape (R, 3), got {np.shape(ridge)}")
+        checks.finite("ridge", points)
         polygon = footprint_polygon(footprint, (), name)
         if not is_convex(polygon):
             raise ValueError(f"footprint of {name!r} must be convex under a roof: join several convex pieces instead")
@@ -230,8 +233,9 @@ class Building:
         Raises
         ------
         ValueError
-            If `footprint` or one of `holes` has fewer than three different corners or one that is not finite, they
-            cross, or `top` is not above `bottom`.
+            If `footprint` or one of `holes` hasn't shape (M, 2), has fewer than three different corners or one that is
+            not finite; they cross; `top` is not above `bottom`, or one of them is not finite; or `name` or `color` is
+            no text.
 
         See Also
         --------
@@ -246,8 +250,7 @@ class Building:
         >>> Building.prism(block, 12, holes=[courtyard]).contains([[5, 5, 6], [15, 10, 6]]).tolist()
         [True, False]
         """
-        if not top > bottom:
-            raise ValueError(f"top of {name!r} must be above its bottom ({bottom:g} m), got {top:g} m")
+        bottom, top = checked_ends(bottom, "top", top, name)
         polygon = footprint_polygon(footprint, holes, name)
         return cls(tuple(extrude(part, bottom, top) for part in convex_parts(polygon)), name, color)
 
@@ -284,6 +287,11 @@ class Building:
         -------
         (...) bool array
 
+        Raises
+        ------
+        ValueError
+            If `points` hasn't shape (..., 3) or is not finite.
+
         See Also
         --------
         City.is_free : asks the voxels instead.
@@ -295,7 +303,7 @@ class Building:
         >>> box.contains([[2, 2, 5], [2, 2, 10], [2, 2, 10.1]]).tolist()
         [True, True, False]
         """
-        points = np.asarray(points, dtype=float)
+        points = checks.array("points", points, ..., 3)
         inside = np.zeros(points.shape[:-1], dtype=bool)
         for hull in self.hulls:
             normals, offsets = hull.equations[:, :3], hull.equations[:, 3]
@@ -327,26 +335,40 @@ def crease_edges(hull: Hull) -> np.ndarray:
     return hull.points[ends].reshape(-1, 3)
 
 
-def footprint_polygon(outline: npt.ArrayLike, holes: Sequence[npt.ArrayLike], name: str) -> shapely.Polygon:
+def checked_ends(bottom: float, what: str, upper: float, name: str) -> tuple[float, float]:
+    """Heights of the lower and the upper end of walls [m]."""
+    bottom, upper = checks.number("bottom", bottom), checks.number(what, upper)
+    if not upper > bottom:
+        raise ValueError(f"{what} of {name!r} must be above its bottom ({bottom:g} m), got {upper:g} m")
+    checks.finite("bottom", bottom)
+    checks.finite(what, upper)
+    return bottom, upper
+
+
+def footprint_polygon(
+    outline: npt.ArrayLike, holes: Sequence[npt.ArrayLike], name: str, argument: str = "footprint"
+) -> shapely.Polygon:
     """A checked polygon; `ValueError` says where an outline crosses itself."""
-    shell, *inner = (
-        checked_ring(ring, f"{part} of {name!r}")
-        for ring, part in [(outline, "footprint"), *((hole, "a hole in the footprint") for hole in holes)]
-    )
+    checks.text("name", name)
+    if isinstance(holes, str | Mapping) or not isinstance(holes, Iterable):
+        raise ValueError(f"holes must be a list of outlines (H, 2), got {type(holes).__name__}")
+    shell = checked_ring(outline, f"{argument} of {name!r}")
+    inner = [checked_ring(hole, f"holes[{n}], a hole in the {argument} of {name!r},") for n, hole in enumerate(holes)]
     polygon = shapely.Polygon(shell, inner)
     if not polygon.is_valid:
         raise ValueError(
-            f"footprint of {name!r} is not a simple polygon: {shapely.is_valid_reason(polygon)}; "
-            "repair the outline so that it doesn't cross or touch itself"
+            f"{argument} of {name!r} is not a simple polygon: {shapely.is_valid_reason(polygon)}; "
+            f"repair the outline{' and its holes' * bool(inner)} so that it doesn't cross or touch itself"
         )
     return polygon
 
 
 def checked_ring(ring: npt.ArrayLike, what: str) -> np.ndarray:
     """Corners (M, 2) of an outline or a hole."""
-    corners = np.asarray(ring, dtype=float)
-    if corners.ndim != 2 or corners.shape[1] < 2 or len(np.unique(corners[:, :2], axis=0)) < 3:
-        raise ValueError(f"{what} needs at least three different corners (x, y)")
+    corners = checks.numbers(what, ring)
+    plane = corners.ndim == 2 and corners.shape[1] in (2, 3)  # heights of corners are left out
+    if not plane or len(np.unique(corners[:, :2], axis=0)) < 3:
+        raise ValueError(f"{what} needs at least three different corners (x, y), got an array of shape {corners.shape}")
     if not np.isfinite(corners).all():
         raise ValueError(f"{what} has a corner that is NaN or infinite")
     return corners[:, :2]

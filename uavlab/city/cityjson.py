@@ -19,6 +19,7 @@ from uavlab.city.blocks import STEEP, note_far_ground, ranges_under
 from uavlab.city.buildings import Building
 from uavlab.city.cityobjects import HOUSES, RELIEF, Thing, things_in, with_all_keys
 from uavlab.city.documents import progress, read_json
+from uavlab.city.extent import checked_grid
 from uavlab.city.model import City
 from uavlab.city.place import (
     FARTHEST_LOCAL,
@@ -31,12 +32,12 @@ from uavlab.city.place import (
     place_at_corner,
     system_for,
 )
-from uavlab.city.rasters import read_terrain
+from uavlab.city.rasters import read_terrain, terrain_or_file
 from uavlab.city.relief import feet_of, ground_below
 from uavlab.city.solids import THINNEST, Body, Surface, enclosed, filled, has_walls
 from uavlab.city.source import Notes
 from uavlab.city.terrain import Terrain
-from uavlab.city.zones import NoFlyZone
+from uavlab.city.zones import NoFlyZone, checked_zones
 
 COVER = {"GenericCityObject", "PlantCover"}
 """Types that, like those of extensions, may lie flat on the ground, as grass does."""
@@ -135,8 +136,9 @@ def read_cityjson(
     ...     read_cityjson(path, crs="local").buildings
     (<Building hall: 1 convex piece, 10 × 20 m, z from 0 to 6 m>,)
     """
-    path = Path(path)
-    notes = Notes()
+    path, notes = checks.path("path", path), Notes()
+    cell, margin = checked_grid(cell, margin, voxels)
+    terrain, no_fly = terrain_or_file(terrain), checked_zones(no_fly)
     documents = read_json(path, objects=with_all_keys)
     if documents[0].get("type") != "CityJSON":
         raise ValueError(f"{path.name} is not CityJSON: type must be 'CityJSON', got {documents[0].get('type')!r}")
@@ -160,16 +162,9 @@ def read_cityjson(
     buildings = [solid_of(pieces, thing, notes) for thing, pieces in solids]
     source = notes.source(path.name, "CityJSON")
     city = City.from_buildings(
-        buildings,
-        cell=cell,
-        margin=margin,
-        name=path.name.split(".")[0],
-        reference=place,
-        source=source,
-        terrain=ground,
-        voxels=voxels,
-        no_fly=no_fly,
-    )
+        buildings, cell=cell, margin=margin, name=path.name.split(".")[0], reference=place, source=source,
+        terrain=ground, voxels=voxels, no_fly=no_fly,
+    )  # fmt: skip
     source.warn()
     return city
 
@@ -363,7 +358,7 @@ def obstacle(thing: Thing, notes: Notes) -> list[np.ndarray]:
 
 
 def ground_of(
-    terrain: Terrain | str | Path | float | None,
+    terrain: Terrain | Path | float | None,
     relief: Sequence[Surface],
     feet: np.ndarray,
     place: Place | None,
@@ -380,8 +375,6 @@ def ground_of(
             notes.add("assumed", "ground level at the lowest point, no building tells where it is", count=0)
         return ground_below(relief, feet)
     notes.add("derived", "ground from terrain=" + (f", which wins over the file's {RELIEF}" if relief else ""), count=0)
-    if isinstance(terrain, Terrain | str | Path):
-        return (terrain if isinstance(terrain, Terrain) else read_terrain(terrain)).placed(place)
-    checks.number("terrain", terrain)
-    checks.finite("terrain", terrain)
-    return float(terrain) - low
+    if isinstance(terrain, float):
+        return terrain - low
+    return (terrain if isinstance(terrain, Terrain) else read_terrain(terrain)).placed(place)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city.buildings import Building
+from uavlab.city.rasterise import RULES
 from uavlab.city.terrain import Terrain, ground_and_top
 
 MOST_VOXELS = 500_000_000
@@ -16,9 +17,16 @@ MOST_VOXELS = 500_000_000
 
 
 def checked_cell(cell: float) -> float:
-    if not (np.isfinite(cell) and cell > 0):
+    edge = checks.number("cell", cell)
+    if not (np.isfinite(edge) and edge > 0):
         raise ValueError(f"cell must be the edge of a voxel in metres, above 0, got {cell!r}")
-    return float(cell)
+    return edge
+
+
+def checked_grid(cell: float, margin: float, voxels: str) -> tuple[float, float]:
+    """Edge of a voxel and free space around buildings [m] as floats; `voxels` must be a rule."""
+    checks.one_of("voxels", voxels, RULES)
+    return checked_cell(cell), checks.not_negative_number("margin", margin)
 
 
 def checked_origin(origin: npt.ArrayLike) -> np.ndarray:
@@ -34,19 +42,55 @@ def locked(array: np.ndarray) -> np.ndarray:
     return array
 
 
-def checked_points(points: npt.ArrayLike) -> np.ndarray:
-    array = checks.numbers("points", points)
-    if array.shape[-1:] != (3,) or not np.isfinite(array).all():
-        raise ValueError(f"points must be finite and have shape (..., 3), got shape {array.shape}")
-    return array
+def checked_occupied(occupied: npt.ArrayLike) -> np.ndarray:
+    """Voxels (nx, ny, nz), True where something is, not to be written to; 0 and 1 will do."""
+    if np.ma.is_masked(occupied):
+        raise ValueError("occupied has masked voxels: say of each whether it is occupied")
+    if not (isinstance(occupied, np.ndarray) and occupied.dtype == bool):
+        values = checks.numbers("occupied", occupied)
+        checks.refuse(values, (values == 0) | (values == 1), "occupied must be True or False in each voxel")
+        occupied = values
+    voxels = checks.frozen(occupied, bool)
+    if voxels.ndim != 3 or voxels.size == 0:
+        raise ValueError(f"occupied must be an array (nx, ny, nz) with at least one voxel, got {voxels.shape}")
+    return voxels
 
 
-def check_heights(min_height: float, max_height: float) -> None:
-    """Refuse heights above ground that leave nothing in between."""
-    checks.not_negative_number("min_height", min_height)
-    checks.number("max_height", max_height)
-    if not max_height > min_height:
-        raise ValueError(f"max_height must be above min_height ({min_height:g} m), got {max_height!r}")
+def checked_ground(ground: npt.ArrayLike, columns: tuple[int, ...]) -> np.ndarray:
+    """Heights of the ground (nx, ny) [m], not to be written to."""
+    heights = checks.frozen(checks.numbers("ground", ground))
+    if heights.shape != columns or not np.isfinite(heights).all():
+        raise ValueError(
+            f"ground must have one finite height for each column {columns}, got shape "
+            f"{heights.shape} with {np.count_nonzero(~np.isfinite(heights))} that are NaN or infinite"
+        )
+    return heights
+
+
+def check_heights(min_height: float, max_height: float) -> tuple[float, float]:
+    """Heights above ground as floats; those that leave nothing in between are refused."""
+    lowest, highest = checks.not_negative_number("min_height", min_height), checks.number("max_height", max_height)
+    if not highest > lowest:
+        raise ValueError(f"max_height must be above min_height ({lowest:g} m), got {max_height!r}")
+    return lowest, highest
+
+
+def checked_bound(name: str, distance: npt.ArrayLike) -> np.ndarray:
+    """A distance [m], or several, at least 0; infinite ones are taken."""
+    bound = checks.numbers(name, distance)
+    checks.refuse(bound, bound >= 0, f"{name} must be a distance in metres, at least 0")
+    return bound
+
+
+def check_segments(start: np.ndarray, end: np.ndarray, at_most: np.ndarray) -> tuple[int, ...]:
+    """The shape (...) that starts and ends (..., 3) of straight lines and bounds (...) have together."""
+    try:
+        return np.broadcast_shapes(start.shape[:-1], end.shape[:-1], at_most.shape)
+    except ValueError:
+        raise ValueError(
+            f"start, end and at_most must be as many, or one for all, got shapes {start.shape}, {end.shape} and "
+            f"{at_most.shape}"
+        ) from None
 
 
 def extent_and_ground(
@@ -69,8 +113,7 @@ def extent_and_ground(
             corner[2] = np.floor(least / cell - 1e-9) * cell - cell if origin is None else low
             shape = (*shape[:2], int(np.ceil((high - corner[2]) / cell - 1e-9)))
     elif terrain is not None:
-        checks.finite("terrain", level := checks.number("terrain", terrain))
-        ground = np.full(shape[:2], level)
+        ground = np.full(shape[:2], terrain)
     check_size(shape, cell)
     return corner, shape, ground, top
 
@@ -93,13 +136,13 @@ def extent_of(
         low = np.min([building.bounds[0] for building in buildings], axis=0)
         low[2] = min(low[2], 0.0)  # where all buildings float, the ground is below them
         high = np.max([building.bounds[1] for building in buildings], axis=0)
-        if isinstance(terrain, int | float):
+        if isinstance(terrain, float):
             low[2], high[2] = min(low[2], terrain), max(high[2], terrain)
             low[2] = np.floor(low[2] / cell + 1e-9) * cell - cell  # one layer of voxels is solid
         around = np.array([margin, margin, 0.0])
         origin = low - around if origin is None else checked_origin(origin)
         size = high + np.array([margin, margin, margin]) - origin if size is None else size
-    corner, extent = np.array(checked_origin(origin)), np.asarray(size, dtype=float)
+    corner, extent = np.array(checked_origin(origin)), checks.numbers("size", size)
     if extent.shape != (3,) or not (np.isfinite(extent) & (extent > 0)).all():
         raise ValueError(f"size must be three positive extents (x, y, z) in metres, got {size!r}")
     nx, ny, nz = np.ceil(extent / cell - 1e-9)

@@ -15,7 +15,6 @@ import shapely
 
 from uavlab import checks
 from uavlab.city.blocks import (
-    LEVEL,
     Block,
     check_size,
     extents_of,
@@ -29,6 +28,7 @@ from uavlab.city.blocks import (
 )
 from uavlab.city.buildings import Building, convex_parts, extrude
 from uavlab.city.documents import count, progress, read_json
+from uavlab.city.extent import checked_grid
 from uavlab.city.footprints import (
     BUILDING,
     OTHER,
@@ -43,9 +43,10 @@ from uavlab.city.heights import Wording, above_ground, above_sea, heights_of
 from uavlab.city.model import City
 from uavlab.city.parts import overridden_by_parts
 from uavlab.city.place import NOWHERE, System, metres_per, system_for
+from uavlab.city.rasters import terrain_or_file
 from uavlab.city.source import FIRST, Notes
 from uavlab.city.terrain import Terrain
-from uavlab.city.zones import NoFlyZone
+from uavlab.city.zones import NoFlyZone, checked_zones
 
 STOREY_HEIGHT = 3.0
 """Of a storey [m], where a file counts storeys."""
@@ -158,16 +159,12 @@ def read_geojson(
     >>> city, city.reference
     (<City town: 54 × 43 × 24 voxels of 2 m, 1 buildings>, Place(longitude=13.377, latitude=52.516, height=0.0))
     """
-    checks.positive_number("storey_height", storey_height)
+    path, notes = checks.path("path", path), Notes()
+    wording = checked_wording(height, base, storey_height, checks.one_of("heights_above", heights_above, ABOVE))
     if default_height is not None:
-        checks.positive_number("default_height", default_height)
-    if not isinstance(height, str):
-        checks.positive_number("height", height)
-    if not isinstance(base, str):
-        (checks.not_negative_number if heights_above != "sea" else checks.finite)("base", base)
-    checks.one_of("heights_above", heights_above, ABOVE)
-    path, notes = Path(path), Notes()
-    wording = Wording(height, base, storey_height)
+        default_height = checks.positive_number("default_height", default_height)
+    cell, margin = checked_grid(cell, margin, voxels)
+    terrain, no_fly = terrain_or_file(terrain), checked_zones(no_fly)
     footprints, declared = read_footprints(path, wording, notes)
     bounds = shapely.total_bounds([footprint.polygons for footprint in footprints])
     system = system_for(bounds, declared, crs, path.name)
@@ -200,18 +197,21 @@ def read_geojson(
     buildings = buildings_of(blocks, extents, notes)
     source = notes.source(path.name, "GeoJSON")
     city = City.from_buildings(
-        buildings,
-        cell=cell,
-        margin=margin,
-        name=path.name.split(".")[0],
-        reference=place,
-        source=source,
-        terrain=ground,
-        voxels=voxels,
-        no_fly=no_fly,
-    )
+        buildings, cell=cell, margin=margin, name=path.name.split(".")[0], reference=place, source=source,
+        terrain=ground, voxels=voxels, no_fly=no_fly,
+    )  # fmt: skip
     source.warn()
     return city
+
+
+def checked_wording(height: str | float, base: str | float, storey_height: float, heights_above: str) -> Wording:
+    """Where heights stand, or what they are."""
+    if not isinstance(height, str):
+        height = checks.positive_number("height", height)
+    if not isinstance(base, str):
+        base = checks.number("base", base)
+        (checks.finite if heights_above == "sea" else checks.not_negative)("base", base)
+    return Wording(height, base, checks.positive_number("storey_height", storey_height))
 
 
 def read_footprints(path: Path, wording: Wording, notes: Notes) -> tuple[list[Footprint], Any]:
@@ -263,7 +263,7 @@ def note_system(notes: Notes, system: System | None, given: Any, declared: Any, 
 
 def note_ground(notes: Notes, from_sea: bool, terrain: Any) -> None:
     """Say what the ground was made of."""
-    if isinstance(terrain, LEVEL):
+    if isinstance(terrain, float):
         notes.add("derived", f"level ground at {terrain:g} m, as given", count=0)
     elif terrain is not None:
         notes.add("derived", "ground from the terrain given", count=0)

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -19,19 +18,24 @@ from uavlab import checks
 from uavlab.city.buildings import Building
 from uavlab.city.extent import (
     check_heights,
+    check_segments,
+    checked_bound,
     checked_cell,
+    checked_grid,
+    checked_ground,
+    checked_occupied,
     checked_origin,
-    checked_points,
     extent_and_ground,
     locked,
 )
-from uavlab.city.place import Place
-from uavlab.city.rasterise import RULES, bilinear, mark_ground, raise_surface, range_of_ground, rasterise, touches
+from uavlab.city.numbering import MOST_PAIRS, checked_index, codes_of, indices_of, pairs_apart, whole_numbers
+from uavlab.city.place import Place, place_of
+from uavlab.city.rasterise import bilinear, mark_ground, range_of_ground, rasterise, reaches_into, surface_below
 from uavlab.city.segments import Runs, runs_of, segment_clearances
 from uavlab.city.source import Source
-from uavlab.city.terrain import Terrain
-from uavlab.city.voxels import TOUCH, distances_to_obstacle, squared_clearance, voxels_on_segment
-from uavlab.city.zones import NoFlyZone, checked_zones
+from uavlab.city.terrain import Terrain, checked_terrain
+from uavlab.city.voxels import TOUCH, distances_to_obstacle, squared_clearance, voxels_on_polyline
+from uavlab.city.zones import NoFlyZone, body_of, checked_zones
 
 TINY = 1e-300
 """A clearance below this is that of an obstacle."""
@@ -67,9 +71,10 @@ class City:
     Raises
     ------
     ValueError
-        If `occupied` is not a three-dimensional array with voxels in it, or has masked ones; `cell` is not above 0 and
-        finite; `origin` is not three finite numbers; `ground` hasn't one finite height for each column; or `no_fly` has
-        something else than zones.
+        If `occupied` is not a three-dimensional array with voxels in it, has masked ones or others than True, False,
+        1 and 0; `cell` is not above 0 and finite; `origin` is not three finite numbers; `buildings` or `no_fly` has
+        something else than buildings or zones; `name` is no text; `reference` is no place on Earth; `ground` hasn't one
+        finite height for each column; or `source` is no `Source`.
 
     See Also
     --------
@@ -101,25 +106,19 @@ class City:
     source: Source | None = None
 
     def __post_init__(self) -> None:
-        if np.ma.is_masked(self.occupied):
-            raise ValueError("occupied has masked voxels: say of each whether it is occupied")
-        occupied = checks.frozen(self.occupied, bool)
-        if occupied.ndim != 3 or occupied.size == 0:
-            raise ValueError(f"occupied must be an array (nx, ny, nz) with at least one voxel, got {occupied.shape}")
+        occupied = checked_occupied(self.occupied)
         object.__setattr__(self, "origin", checked_origin(self.origin))
         object.__setattr__(self, "cell", checked_cell(self.cell))
-        object.__setattr__(self, "buildings", tuple(self.buildings))
+        buildings = checks.several("buildings", self.buildings, Building, least=0)
+        object.__setattr__(self, "buildings", tuple(buildings))
+        object.__setattr__(self, "name", checks.text("name", self.name))
         object.__setattr__(self, "no_fly", checked_zones(self.no_fly))
+        if self.source is not None:
+            checks.instance("source", self.source, Source)
         if self.reference is not None:
-            object.__setattr__(self, "reference", Place(*self.reference))
+            object.__setattr__(self, "reference", place_of("reference", self.reference))
         if self.ground is not None:
-            ground = checks.frozen(checks.numbers("ground", self.ground))
-            if ground.shape != occupied.shape[:2] or not np.isfinite(ground).all():
-                raise ValueError(
-                    f"ground must have one finite height for each column {occupied.shape[:2]}, got shape "
-                    f"{ground.shape} with {np.count_nonzero(~np.isfinite(ground))} that are NaN or infinite"
-                )
-            object.__setattr__(self, "ground", ground)
+            object.__setattr__(self, "ground", checked_ground(self.ground, occupied.shape[:2]))
             solid = occupied.copy()
             mark_ground(solid, self.range_of_ground[1], self.cell, self.origin[2])
             occupied = locked(solid)
@@ -177,9 +176,10 @@ class City:
         Raises
         ------
         ValueError
-            If `buildings` is empty and `origin` or `size` is missing; `cell` or `size` is not above 0; `margin` is
-            negative; `origin` is not three finite numbers; `terrain` doesn't cover the map, has a reference system, or
-            is a number that is not finite; `voxels` is none of the two; or the map would have over 500 million voxels.
+            If `buildings` is no list of `Building`, or is empty and `origin` or `size` is missing; `cell` or `size` is
+            not above 0; `margin` is negative; `origin` is not three finite numbers; `terrain` is neither terrain nor a
+            finite number, doesn't cover the map, or has a reference system; `voxels` is none of the two; the map would
+            have over 500 million voxels; or `name`, `reference`, `source` or `no_fly` is what `City` refuses.
 
         See Also
         --------
@@ -204,16 +204,16 @@ class City:
         >>> int(City.from_buildings([wall], margin=5, voxels="centres").occupied.sum())
         0
         """
-        cell = checked_cell(cell)
-        checks.one_of("voxels", voxels, RULES)
-        checks.not_negative_number("margin", margin)
+        buildings = checks.several("buildings", buildings, Building, least=0)
+        cell, margin = checked_grid(cell, margin, voxels)
+        terrain, zones = checked_terrain(terrain), checked_zones(no_fly)
         corner, shape, ground, top = extent_and_ground(buildings, cell, origin, size, margin, terrain)
         occupied = np.zeros(shape, dtype=bool)
         if top is not None:
             mark_ground(occupied, top, cell, corner[2])
         hulls = (hull for building in buildings for hull in building.hulls)
         rasterise(hulls, occupied, cell, corner, voxels)
-        return cls(locked(occupied), cell, corner, tuple(buildings), name, reference, ground, tuple(no_fly), source)
+        return cls(locked(occupied), cell, corner, tuple(buildings), name, reference, ground, zones, source)
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -301,9 +301,7 @@ class City:
         >>> [round(float(push[tuple(city.cell_of(point))]), 2) for point in [(82.5, 57.5, 32.5), (82.5, 52.5, 32.5)]]
         [6.0, 0.0]
         """
-        direction = np.asarray(vector, dtype=float)
-        if direction.shape != (3,) or not np.isfinite(direction).all():
-            raise ValueError(f"vector must be three finite numbers (east, north, up), got {vector!r}")
+        direction = checks.array("vector", vector, 3)
         if not direction.any():
             return np.zeros(self.shape)
         return np.maximum(0.0, self.wall_normal @ -direction)
@@ -346,8 +344,7 @@ class City:
         [2.5, 0.5, 0.0]
         """
         way = np.array(checks.three("offset", offset))
-        checks.number("at_most", at_most)
-        checks.refuse(np.asarray(at_most), np.asarray(at_most) >= 0, "at_most must be a distance in metres, at least 0")
+        at_most = float(checked_bound("at_most", checks.number("at_most", at_most)))
         least = np.minimum(self.clearance, at_most)
         if way.any():
             index = np.argwhere((self.clearance - np.linalg.norm(way) < at_most) & ~self.occupied)
@@ -395,7 +392,7 @@ class City:
         >>> city.height_above_ground([(80, 50, 30), (80, 50, 8)])
         array([18., -4.])
         """
-        points = checked_points(points)
+        points = checks.array("points", points, ..., 3)
         if self.ground is None:
             return points[..., 2] - self.origin[2]
         return points[..., 2] - bilinear(self.ground, (points[..., :2] - self.origin[:2]) / self.cell)
@@ -406,17 +403,8 @@ class City:
 
         Roofs are taken from the buildings, exactly; from the voxels where the city knows none.
         """
-        levels = self.coordinates(2)
-        surface = np.empty(self.shape)
-        surface[:] = np.minimum(self.range_of_ground[1][..., None], levels)
-        if self.buildings:
-            for building in self.buildings:
-                raise_surface(building, surface, levels, self.cell, self.origin)
-        else:
-            above_ground = levels - self.cell / 2 >= self.range_of_ground[1][..., None]
-            tops = np.where(self.occupied & above_ground, levels + self.cell / 2, surface)
-            surface = np.maximum.accumulate(tops, axis=2)
-        return locked(surface)
+        ground, levels = self.range_of_ground[1], self.coordinates(2)
+        return locked(surface_below(self.buildings, self.occupied, ground, levels, self.cell, self.origin))
 
     @cached_property
     def height_above_surface(self) -> np.ndarray:
@@ -464,13 +452,10 @@ class City:
         >>> round(float(city.distance(far)), 2), round(float(city.distance(far, exact_within=50)), 2)
         (33.34, 35.0)
         """
-        points = np.asarray(points, dtype=float)
-        if points.shape[-1:] != (3,) or not np.isfinite(points).all():
-            raise ValueError(f"points must be finite and have shape (..., 3), got shape {points.shape}")
-        if exact_within is not None and not exact_within >= 0:
-            raise ValueError(f"exact_within must be a distance in metres, at least 0, got {exact_within!r}")
+        points = checks.array("points", points, ..., 3)
         cells = (points.reshape(-1, 3) - self.origin) / self.cell
-        near = 4.0 if exact_within is None else exact_within / self.cell
+        within = 4.0 * self.cell if exact_within is None else checks.number("exact_within", exact_within)
+        near = float(checked_bound("exact_within", within)) / self.cell
         distances = distances_to_obstacle(self.occupied, self.clearance, self.cell, cells, near)
         return self.cell * distances.reshape(points.shape[:-1])
 
@@ -501,7 +486,8 @@ class City:
         Raises
         ------
         ValueError
-            If `start` or `end` hasn't shape (..., 3) or is not finite, or `at_most` is negative.
+            If `start` or `end` hasn't shape (..., 3) or is not finite, `at_most` is negative, or the three have shapes
+            that don't go together.
 
         See Also
         --------
@@ -517,10 +503,10 @@ class City:
         >>> city.segment_distance([(60, 52, 30), (5, 5, 30)], [(95, 52, 30), (95, 95, 30)]).round(2)
         array([7., 0.])
         """
-        first, last = np.broadcast_arrays(checked_points(start), checked_points(end))
-        checks.refuse(np.asarray(at_most), np.asarray(at_most) >= 0, "at_most must be a distance in metres, at least 0")
-        shape = np.broadcast_shapes(first.shape[:-1], np.shape(at_most))
-        within = np.broadcast_to(np.asarray(at_most, dtype=float) / self.cell, shape).flatten()
+        first, last = checks.array("start", start, ..., 3), checks.array("end", end, ..., 3)
+        bound = checked_bound("at_most", at_most)
+        shape = check_segments(first, last, bound)
+        within = np.broadcast_to(bound / self.cell, shape).flatten()
         starts, ends = (
             np.array(np.broadcast_to((points - self.origin) / self.cell, (*shape, 3))).reshape(-1, 3)
             for points in (first, last)
@@ -604,10 +590,8 @@ class City:
         >>> int(city.blocked(5.0, min_height=20.0, max_height=60.0).sum())
         6352
         """
-        checks.number("min_clearance", min_clearance)
-        if not (np.isfinite(min_clearance) and min_clearance >= 0):
-            raise ValueError(f"min_clearance must be a distance in metres, at least 0, got {min_clearance!r}")
-        check_heights(min_height, max_height)
+        min_clearance = checks.not_negative_number("min_clearance", min_clearance)
+        min_height, max_height = check_heights(min_height, max_height)
         blocked = self.occupied
         if min_clearance > 0:
             blocked = self.clearance < max(min_clearance - 1e-9 * self.cell, TINY)
@@ -629,6 +613,11 @@ class City:
         -------
         (nx, ny, nz) bool array
 
+        Raises
+        ------
+        ValueError
+            If `min_height` is negative or not finite, or `max_height` not above it.
+
         See Also
         --------
         City.blocked : with obstacles and no-fly zones.
@@ -642,6 +631,7 @@ class City:
         >>> city.coordinates(2)[~outside[0, 0]]
         array([22.5, 27.5, 32.5, 37.5, 42.5, 47.5, 52.5, 57.5])
         """
+        min_height, max_height = check_heights(min_height, max_height)
         lowest, highest = self.range_of_ground
         levels = self.coordinates(2)
         too_low = levels < (highest + (min_height - 1e-9))[..., None]
@@ -667,6 +657,11 @@ class City:
         Building
             From `lower` above the lowest ground below the zone to `upper` above the highest [m].
 
+        Raises
+        ------
+        ValueError
+            If `zone` is no `NoFlyZone`.
+
         See Also
         --------
         NoFlyZone.pieces : its pieces between any two heights.
@@ -679,16 +674,8 @@ class City:
         >>> table1_city(cell=5.0).zone_building(airway)  # the map ends at 100 m
         <Building airway: 1 convex piece, 20 × 100 m, z from 30 to 100 m>
         """
-        (low, high), column = self.bounds[:, 2], np.zeros(self.shape[:2], dtype=bool)
-        for piece in zone.pieces(low, high):
-            column |= touches(Building((piece,)), self.shape, self.cell, self.origin)
-        lowest, highest = self.range_of_ground
-        if column.any():
-            low, high = (
-                np.clip(zone.lower + lowest[column].min(), low, high - 1e-3),
-                np.clip(zone.upper + highest[column].max(), low + 1e-3, high),
-            )
-        return Building(tuple(zone.pieces(low, max(high, low + 1e-3))), zone.name)
+        checks.instance("zone", zone, NoFlyZone)
+        return body_of(zone, self.range_of_ground, self.bounds, self.shape, self.cell)
 
     def cell_of(self, points: npt.ArrayLike) -> np.ndarray:
         """Indices of the voxels in which points lie, ⌊(p − origin) / cell⌋.
@@ -721,9 +708,7 @@ class City:
         array([[16, 10,  6],
                [-1, 10,  6]])
         """
-        points = np.asarray(points, dtype=float)
-        if points.shape[-1:] != (3,):
-            raise ValueError(f"points must have shape (..., 3), got {points.shape}")
+        points = checks.array("points", points, ..., 3, finite=False)
         index = np.floor((points - self.origin) / self.cell)
         return np.where(np.abs(index) < 2.0**62, index, -1).astype(np.int64)
 
@@ -742,8 +727,8 @@ class City:
 
         Raises
         ------
-        IndexError
-            If there is no such `axis`.
+        ValueError
+            If `axis` is none of the three.
 
         See Also
         --------
@@ -755,6 +740,8 @@ class City:
         >>> table1_city(cell=25.0).coordinates(0)
         array([12.5, 37.5, 62.5, 87.5])
         """
+        if checks.whole("axis", axis, 0) > 2:
+            raise ValueError(f"axis must be 0 (east), 1 (north) or 2 (up), got {axis}")
         return self.origin[axis] + self.cell * (np.arange(self.shape[axis]) + 0.5)
 
     def center_of(self, index: npt.ArrayLike) -> np.ndarray:
@@ -770,6 +757,11 @@ class City:
         (..., 3) array
             [m]
 
+        Raises
+        ------
+        ValueError
+            If `index` hasn't shape (..., 3) or whole numbers.
+
         See Also
         --------
         City.cell_of : the inverse.
@@ -780,7 +772,7 @@ class City:
         >>> table1_city(cell=5.0).center_of((16, 10, 6))
         array([82.5, 52.5, 32.5])
         """
-        return self.origin + self.cell * (np.asarray(index) + 0.5)
+        return self.origin + self.cell * (checked_index(index) + 0.5)
 
     def code_of(self, index: npt.ArrayLike, *, as_printed: bool = False) -> np.ndarray:
         """Node codes of voxels: k + nz·(j + ny·i), the position in `occupied.ravel()`.
@@ -800,7 +792,8 @@ class City:
         Raises
         ------
         ValueError
-            If `index` hasn't shape (..., 3) or lies outside of the map, or `as_printed` isn't True or False.
+            If `index` hasn't shape (..., 3) or whole numbers, or lies outside of the map, or `as_printed` isn't True or
+            False.
 
         See Also
         --------
@@ -815,16 +808,7 @@ class City:
         >>> int(city.code_of((0, 0, 0))), int(city.code_of((0, 0, 0), as_printed=True))
         (0, 7981)
         """
-        index = np.asarray(index)
-        if index.shape[-1:] != (3,):
-            raise ValueError(f"index must have shape (..., 3), got {index.shape}")
-        if ((index < 0) | (index >= self.shape)).any():
-            wrong = index[((index < 0) | (index >= self.shape)).any(axis=-1)].reshape(-1, 3)[0]
-            raise ValueError(f"index {tuple(wrong.tolist())} lies outside of the map of {self.shape} voxels")
-        if checks.flag("as_printed", as_printed):
-            nx, ny, nz = self.shape
-            return 1 + index[..., 0] + nx * ((ny - 1 - index[..., 1]) + ny * (nz - 1 - index[..., 2]))
-        return np.ravel_multi_index(tuple(np.moveaxis(index, -1, 0)), self.shape)
+        return codes_of(checked_index(index), self.shape, checks.flag("as_printed", as_printed))
 
     def index_of(self, code: npt.ArrayLike, *, as_printed: bool = False) -> np.ndarray:
         """Indices of the voxels with these node codes; the inverse of `code_of`.
@@ -843,7 +827,7 @@ class City:
         Raises
         ------
         ValueError
-            If `code` is out of its range, or `as_printed` isn't True or False.
+            If `code` is no whole number or out of its range, or `as_printed` isn't True or False.
 
         See Also
         --------
@@ -856,18 +840,7 @@ class City:
         >>> city.index_of(6606), int(city.code_of(city.index_of(6606)))
         (array([16, 10,  6]), 6606)
         """
-        first = 1 if checks.flag("as_printed", as_printed) else 0
-        code = np.asarray(code)
-        beyond = (code < first) | (code >= self.occupied.size + first)
-        if beyond.any():
-            raise ValueError(
-                f"code must be from {first} to {self.occupied.size - 1 + first}, got {code[beyond].flat[0]}"
-            )
-        if as_printed:
-            nx, ny, nz = self.shape
-            k, j, i = np.unravel_index(code - first, (nz, ny, nx))
-            return np.stack([i, ny - 1 - j, nz - 1 - k], axis=-1)
-        return np.stack(np.unravel_index(code, self.shape), axis=-1)
+        return indices_of(whole_numbers("code", code), self.shape, checks.flag("as_printed", as_printed))
 
     def inside(self, points: npt.ArrayLike) -> np.ndarray:
         """Whether points lie in the map's box, origin ≤ p < origin + cell·shape.
@@ -930,9 +903,9 @@ class City:
         >>> city.is_free([(80, 50, 30), (80, 70, 30), (80, 120, 30)]).tolist()  # free, in a building, off the map
         [True, False, False]
         """
-        points = np.asarray(points, dtype=float)
-        inside = self.inside(points)
-        index = np.where(inside[..., None], self.cell_of(points), 0)
+        index = self.cell_of(points)
+        inside = np.all((index >= 0) & (index < self.shape), axis=-1)
+        index = np.where(inside[..., None], index, 0)
         return inside & ~self.occupied[tuple(np.moveaxis(index, -1, 0))]
 
     def building_at(self, point: npt.ArrayLike) -> str:
@@ -952,7 +925,7 @@ class City:
         Raises
         ------
         ValueError
-            If `point` hasn't shape (3,).
+            If `point` hasn't shape (3,) or is not finite.
 
         See Also
         --------
@@ -965,11 +938,9 @@ class City:
         >>> table1_city(cell=5.0).building_at((80, 70, 30))
         "building '3 frustum'"
         """
-        voxel = self.center_of(self.cell_of(point)) - self.cell / 2
+        voxel = self.center_of(self.cell_of(checks.array("point", point, 3))) - self.cell / 2
         for building in self.buildings:
-            here = np.zeros((1, 1, 1), dtype=bool)
-            rasterise(building.hulls, here, self.cell, voxel, "touched")
-            if here.any():
+            if reaches_into(building, voxel, self.cell):
                 return f"building {building.name!r}"
         return "the ground" if self.ground is not None else "an obstacle"
 
@@ -989,7 +960,7 @@ class City:
         Raises
         ------
         ValueError
-            If `point` hasn't shape (3,).
+            If `point` hasn't shape (3,) or is not finite.
 
         See Also
         --------
@@ -1005,11 +976,9 @@ class City:
         >>> city.zone_at((5, 5, 30)), city.zone_at((5, 5, 50))
         ('park', '')
         """
-        voxel = self.center_of(self.cell_of(point)) - self.cell / 2
+        voxel = self.center_of(self.cell_of(checks.array("point", point, 3))) - self.cell / 2
         for zone in self.no_fly:
-            here = np.zeros((1, 1, 1), dtype=bool)
-            rasterise(self.zone_building(zone).hulls, here, self.cell, voxel, "touched")
-            if here.any():
+            if reaches_into(self.zone_building(zone), voxel, self.cell):
                 return zone.name
         return ""
 
@@ -1046,7 +1015,7 @@ class City:
         >>> city.to_geographic((100, 0, 30)).round(4)
         array([13.3792, 52.5163, 64.    ])
         """
-        points, place = checked_points(points), self.checked_reference()
+        points, place = checks.array("points", points, ..., 3), self.checked_reference()
         lonlat = place.longitude_latitude(points[..., :2])
         return np.concatenate([lonlat, points[..., 2:] + place.height], axis=-1)
 
@@ -1081,7 +1050,7 @@ class City:
         >>> city.from_geographic((13.3787, 52.5168, 64.0)).round(1)
         array([67.9, 55.6, 30. ])
         """
-        points, place = checked_points(points), self.checked_reference()
+        points, place = checks.array("points", points, ..., 3), self.checked_reference()
         checks.within("points: latitudes", points[..., 1], -90.0, 90.0, "degrees (order: longitude, latitude, height)")
         return np.concatenate([place.east_north(points[..., :2]), points[..., 2:] - place.height], axis=-1)
 
@@ -1123,11 +1092,11 @@ class City:
         Parameters
         ----------
         count : int
-            How many pairs.
+            How many pairs, at most 100 000.
         rng : numpy.random.Generator or int
             A generator, or the seed of one.
         apart : float
-            Least straight distance between start and goal [m].
+            Least straight distance between start and goal [m], at least 0.
         min_clearance : float
             Least distance of both to obstacles [m]; 0 allows every free voxel.
 
@@ -1139,8 +1108,8 @@ class City:
         Raises
         ------
         ValueError
-            If `count` is below 1, `rng` is neither generator nor seed, `min_clearance` is negative or not finite, or no
-            such pairs are found, `apart` and `min_clearance` being too much for this city.
+            If `count` is not from 1 to 100 000, `rng` is neither generator nor seed, `apart` or `min_clearance` is
+            negative or not finite, or no such pairs are found, the two being too much for this city.
 
         See Also
         --------
@@ -1154,21 +1123,17 @@ class City:
         >>> pairs.shape, bool((np.linalg.norm(pairs[:, 1] - pairs[:, 0], axis=1) >= 60.0).all())
         ((100, 2, 3), True)
         """
-        if count < 1:
-            raise ValueError(f"count must be at least 1, got {count!r}")
-        rng = checks.generator("rng", rng)
+        count, rng = checks.whole("count", count, 1, MOST_PAIRS), checks.generator("rng", rng)
+        apart = checks.not_negative_number("apart", apart)
         allowed = np.flatnonzero(~self.blocked(min_clearance))
-        pairs: list[np.ndarray] = []
-        for _ in range(1000 * count if len(allowed) else 0):
-            start, goal = self.center_of(self.index_of(allowed[rng.integers(len(allowed), size=2)]))
-            if np.linalg.norm(goal - start) >= apart:
-                pairs.append(np.array([start, goal]))
-            if len(pairs) == count:
-                return np.array(pairs)
-        raise ValueError(
-            f"no {count} pairs found that are apart={apart:g} m from each other and min_clearance={min_clearance:g} m "
-            f"from obstacles; the map measures {' × '.join(f'{extent:g}' for extent in np.ptp(self.bounds, axis=0))} m"
-        )
+        pairs = pairs_apart(allowed, self.shape, self.cell, self.origin, count, rng, apart)
+        if len(pairs) < count:
+            extents = " × ".join(f"{extent:g}" for extent in np.ptp(self.bounds, axis=0))
+            raise ValueError(
+                f"no {count} pairs found that are apart={apart:g} m from each other and "
+                f"min_clearance={min_clearance:g} m from obstacles; the map measures {extents} m"
+            )
+        return np.array(pairs)
 
     def voxels_along(self, points: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """The voxels that a polyline passes through, none left out, and its length in each.
@@ -1205,14 +1170,7 @@ class City:
         >>> index.tolist(), length.round(2)
         ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 1, 0]], array([2.8, 2.8, 2.8, 2.8]))
         """
-        points = np.asarray(points, dtype=float)
-        if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
-            raise ValueError(f"points must be finite and have shape (N, 3), got shape {points.shape}")
-        voxels, lengths = [], []
-        for start, end in pairwise(points):
-            index, leave = voxels_on_segment((start - self.origin) / self.cell, (end - self.origin) / self.cell)
-            voxels.append(index)
-            lengths.append(np.diff(leave, prepend=0.0) * np.linalg.norm(end - start))
-        if not voxels:
+        points = checks.array("points", points, None, 3)
+        if len(points) < 2:
             return self.cell_of(points), np.zeros(len(points))
-        return np.concatenate(voxels), np.concatenate(lengths)
+        return voxels_on_polyline(points, self.cell, self.origin)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -41,8 +41,28 @@ UNITS = {
 """Metres per unit of length."""
 
 
-class Place(NamedTuple):
+class Geographic(NamedTuple):
+    """Three coordinates."""
+
+    longitude: float
+    latitude: float
+    height: float = 0.0
+
+
+class Place(Geographic):
     """The place of x = y = z = 0 of a city.
+
+    Attributes
+    ----------
+    longitude, latitude : float
+        [degrees, WGS84]; longitudes may go on past ±180, to ±540.
+    height : float
+        [m], in the vertical system of the file that it was read from.
+
+    Raises
+    ------
+    ValueError
+        If `longitude` is not from −540 to 540, `latitude` not from −90 to 90, or `height` is not finite.
 
     See Also
     --------
@@ -56,12 +76,14 @@ class Place(NamedTuple):
     Place(longitude=13.3777, latitude=52.5163, height=0.0)
     """
 
-    longitude: float
-    """[degrees, WGS84]"""
-    latitude: float
-    """[degrees, WGS84]"""
-    height: float = 0.0
-    """[m], in the vertical system of the file that it was read from."""
+    __slots__ = ()
+
+    def __new__(cls, longitude: float, latitude: float, height: float = 0.0) -> Self:
+        east, north = checks.number("longitude", longitude), checks.number("latitude", latitude)
+        checks.within("longitude", east, -540.0, 540.0, "degrees")
+        checks.within("latitude", north, -90.0, 90.0, "degrees (the order is longitude, latitude)")
+        checks.finite("height", up := checks.number("height", height))
+        return super().__new__(cls, east, north, up)
 
     def east_north(self, lonlat: npt.ArrayLike) -> np.ndarray:
         """East and north of longitudes and latitudes, in the plane that touches the Earth here.
@@ -79,6 +101,11 @@ class Place(NamedTuple):
         (..., 2) array
             East and north [m].
 
+        Raises
+        ------
+        ValueError
+            If `lonlat` hasn't shape (..., 2), is not finite, or has a latitude that is not from −90 to 90.
+
         See Also
         --------
         Place.longitude_latitude : the inverse.
@@ -93,7 +120,8 @@ class Place(NamedTuple):
         >>> gate.east_north((13.3877, 52.5263)).round(1)
         array([ 678.7, 1112.8])
         """
-        lonlat = np.asarray(lonlat, dtype=float)
+        lonlat = checks.array("lonlat", lonlat, ..., 2)
+        checks.within("lonlat: latitudes", lonlat[..., 1], -90.0, 90.0, "degrees (the order is longitude, latitude)")
         east, north, _ = topocentric(self).transform(
             lonlat[..., 0], lonlat[..., 1], np.full(lonlat.shape[:-1], self.height)
         )
@@ -115,6 +143,11 @@ class Place(NamedTuple):
         (..., 2) array
             Longitudes and latitudes [degrees, WGS84].
 
+        Raises
+        ------
+        ValueError
+            If `points` hasn't shape (..., 2) or is not finite.
+
         See Also
         --------
         Place.east_north : the inverse.
@@ -127,7 +160,7 @@ class Place(NamedTuple):
         >>> gate.longitude_latitude((678.7, 1112.8)).round(4)
         array([13.3877, 52.5263])
         """
-        points = np.asarray(points, dtype=float)
+        points = checks.array("points", points, ..., 2)
         down = np.zeros(points.shape[:-1])
         for _ in range(4):
             longitude, latitude, height = topocentric(self).transform(
@@ -136,6 +169,16 @@ class Place(NamedTuple):
             down = down + (height - self.height)
         turned = (longitude - self.longitude + 180.0) % 360.0 - 180.0
         return np.stack([self.longitude + turned, latitude], axis=-1)
+
+
+def place_of(name: str, value: Any) -> Place:
+    """A place, also given as (longitude, latitude[, height])."""
+    if isinstance(value, Place):
+        return value
+    coordinates = checks.numbers(name, value)
+    if coordinates.shape not in ((2,), (3,)):
+        raise ValueError(f"{name} must be a Place, or (longitude, latitude[, height]), got {value!r:.60}")
+    return Place(*coordinates.tolist())
 
 
 def place_at_corner(lonlat: np.ndarray, height: float = 0.0) -> Place:

@@ -82,6 +82,26 @@ def raise_surface(building: Building, surface: np.ndarray, levels: np.ndarray, c
         np.maximum(surface[i, j], below, out=surface[i, j])
 
 
+def surface_below(
+    buildings: Sequence[Building], occupied: np.ndarray, ground: np.ndarray, levels: np.ndarray, cell: float,
+    origin: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """Highest point of ground and roofs below each centre, anywhere in its column, (nx, ny, nz) [m].
+
+    `ground` (nx, ny) is the highest of each column, `levels` (nz,) are the heights of the centres [m]. Without
+    buildings what is occupied counts.
+    """
+    surface = np.empty(occupied.shape)
+    surface[:] = np.minimum(ground[..., None], levels)
+    if not buildings:
+        above_ground = levels - cell / 2 >= ground[..., None]
+        tops = np.where(occupied & above_ground, levels + cell / 2, surface)
+        return np.maximum.accumulate(tops, axis=2)
+    for building in buildings:
+        raise_surface(building, surface, levels, cell, origin)
+    return surface
+
+
 def range_of_ground(ground: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest point of the ground in each column (nx, ny) [m], bilinear between the columns' centres."""
     padded = np.pad(ground, 1, mode="edge")
@@ -105,6 +125,13 @@ def bilinear(ground: np.ndarray, columns: np.ndarray) -> np.ndarray:
     south_side = (1 - x) * ground[i, j] + x * ground[east, j]
     north_side = (1 - x) * ground[i, north] + x * ground[east, north]
     return (1 - y) * south_side + y * north_side
+
+
+def reaches_into(building: Building, voxel: np.ndarray, cell: float) -> bool:
+    """Whether a building reaches into the voxel with this lowest corner (3,) [m]."""
+    here = np.zeros((1, 1, 1), dtype=bool)
+    rasterise(building.hulls, here, cell, voxel, "touched")
+    return bool(here.any())
 
 
 def touches(building: Building, shape: Sequence[int], cell: float, origin: np.ndarray) -> np.ndarray:

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from uavlab import checks
 from uavlab.city.place import LOCAL, System, metres_per, system_of
-from uavlab.city.terrain import Terrain, check_pixels, filled_masks, pixels_and_edge
+from uavlab.city.terrain import Terrain, check_pixels, checked_terrain, filled_masks, pixels_and_edge
 
 
 def read_terrain(path: str | Path, *, crs: Any = None) -> Terrain:
@@ -55,13 +56,18 @@ def read_terrain(path: str | Path, *, crs: Any = None) -> Terrain:
     >>> hill.heights_at([(5, 5), (15, 5)]), hill.filled().heights_at([(5, 5), (15, 5)])
     (array([ 0., nan]), array([0., 4.]))
     """
-    path = Path(path)
+    path = checks.path("path", path)
     with path.open("rb") as file:
         start = file.read(4)
     return read_geotiff(path, crs) if start[:2] in (b"II", b"MM") else read_ascii_grid(path, crs)
 
 
 HEADER = {"ncols", "nrows", "cellsize", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "nodata_value", "dx", "dy"}
+
+
+def terrain_or_file(terrain: Any) -> Terrain | Path | float | None:
+    """What a reader of cities takes for its ground: a terrain, the name of its file, a level [m], or nothing."""
+    return checks.path("terrain", terrain) if isinstance(terrain, str | Path) else checked_terrain(terrain)
 
 
 def read_ascii_grid(path: Path, crs: Any) -> Terrain:

@@ -12,6 +12,7 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
+from uavlab import checks
 from uavlab.city.cityjson import read_cityjson
 from uavlab.city.documents import advice_on, read_json
 from uavlab.city.geojson import read_geojson
@@ -66,7 +67,7 @@ def read_city(path: str | Path, **options: Any) -> City:
     ...     read_city(path, cell=2.0)
     <City maze: 4 × 3 × 2 voxels of 2 m, 0 buildings>
     """
-    path = Path(path)
+    path = checks.path("path", path)
     with path.open("rb") as file:
         start = file.read(FIRST_BYTES).removeprefix(b"\xef\xbb\xbf").lstrip(b" \t\r\n\x1e")
     if path.suffix.lower() == ".3dmap" or start.startswith(b"voxel"):

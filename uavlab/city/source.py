@@ -128,7 +128,7 @@ class Source:
         Raises
         ------
         ValueError
-            If `kind` is none of these.
+            If `kind` is none of these, or `what` is no text.
 
         See Also
         --------
@@ -143,7 +143,8 @@ class Source:
         >>> source.count("left out"), source.count("left out", "polygon")
         (5, 1)
         """
-        return sum(entry.count for entry in self.of(kind) if what in entry.what)
+        words = checks.text("what", what)
+        return sum(entry.count for entry in self.of(kind) if words in entry.what)
 
     @property
     def doubts(self) -> tuple[Entry, ...]:
@@ -170,6 +171,11 @@ class Source:
         advice : str
             What the warning ends with.
 
+        Raises
+        ------
+        ValueError
+            If `advice` is no text.
+
         Warns
         -----
         UserWarning
@@ -189,6 +195,7 @@ class Source:
         >>> print(said[0].message)
         town.geojson: left out: 4 × mast. city.source tells all
         """
+        checks.text("advice", advice)
         if self.doubts:
             said = "; ".join(map(str, self.doubts))
             # one reader calls another: as many frames are left out as belong to the library

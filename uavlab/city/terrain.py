@@ -17,7 +17,8 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city.columns import share_out
-from uavlab.city.place import LOCAL, Place, System, check_fits, system_of
+from uavlab.city.numbering import whole_numbers
+from uavlab.city.place import LOCAL, Place, System, check_fits, place_of, system_of
 from uavlab.city.rasterise import range_of_ground, ranges_of
 from uavlab.city.triangles import heights_of, rims_of, triangulated
 
@@ -56,8 +57,8 @@ class Terrain:
     ------
     ValueError
         If `points` hasn't shape (N, 3), is not finite, has a height that is none on Earth, or lies outside of where
-        `system` is used; `triangles` hasn't shape (T, 3) or names points that there aren't; or `beyond` is none of the
-        two.
+        `system` is used; `triangles` hasn't shape (T, 3) and whole numbers, or names points that there aren't; `system`
+        is no `System`; or `beyond` is none of the two.
 
     See Also
     --------
@@ -88,6 +89,8 @@ class Terrain:
         if not np.isfinite(points).all():
             raise ValueError("points of a terrain must be finite: leave out what has no data")
         triangles = checked_triangles(self.triangles, len(points))
+        if self.system is not None:
+            checks.instance("system", self.system, System)
         if self.system is None:  # counted from anywhere on Earth
             check_heights(points[:, 2], LOWEST - HIGHEST, HIGHEST - LOWEST)
         else:
@@ -181,8 +184,8 @@ class Terrain:
         Raises
         ------
         ValueError
-            If `grid` has no data at all, a height that is none on Earth, or lies outside of where `system` is used; or
-            `beyond` is none of the two.
+            If `grid` hasn't shape (rows, columns, 3), has no data at all, a height that is none on Earth, or lies
+            outside of where `system` is used; `system` is no `System`; or `beyond` is none of the two.
 
         See Also
         --------
@@ -196,6 +199,9 @@ class Terrain:
         >>> Terrain.from_grid(np.stack([x, y, x / 10], axis=-1))
         <Terrain: 6 points, 4 triangles, heights from 0 to 3 m>
         """
+        grid = checks.array("grid", grid, None, None, 3, finite=False)
+        if system is not None:
+            checks.instance("system", system, System)
         rows, columns = grid.shape[:2]
         number = np.arange(rows * columns).reshape(rows, columns)
         north_west, north_east = number[:-1, :-1].ravel(), number[:-1, 1:].ravel()
@@ -206,7 +212,7 @@ class Terrain:
         points = grid.reshape(-1, 3)
         known = np.isfinite(points).all(axis=1)
         if not known.any():
-            raise ValueError("heights have no data at all: every one is NaN or masked")
+            raise ValueError("heights have no data at all: every one in the grid is NaN or masked")
         check_heights(points[known, 2], LOWEST, HIGHEST, 1.0 if system is None else system.height_factor)
         renumbered = np.cumsum(known) - 1
         return cls(points[known], renumbered[triangles[known[triangles].all(axis=1)]], system, beyond)
@@ -263,7 +269,8 @@ class Terrain:
         Raises
         ------
         ValueError
-            If the terrain has a `system` and `place` is None, or a point has no place on Earth in that system.
+            If the terrain has a `system` and `place` is None, `place` is no place on Earth, or a point has none in that
+            system.
 
         See Also
         --------
@@ -279,6 +286,8 @@ class Terrain:
         >>> ground, ground.points[:, :2].max(axis=0).round(1)
         (<Terrain: 16 points, 18 triangles, heights from 0 to 20 m>, array([149.3, 111.2]))
         """
+        if place is not None:
+            place = place_of("place", place)
         if self.system is None:
             return self
         if place is None:
@@ -345,6 +354,16 @@ class Terrain:
         """Triangles (G, 3) that join the rims of the surface and what points lie beside it, for its gaps."""
         rims = rims_of(self.triangles, len(self.points))
         return np.asarray(rims[triangulated(self.points[rims])])
+
+
+def checked_terrain(terrain: Any) -> Terrain | float | None:
+    """A terrain, the height of level ground [m] as a float, or None."""
+    if terrain is None or isinstance(terrain, Terrain):
+        return terrain
+    if not isinstance(terrain, int | float | np.generic | np.ndarray) or np.ndim(terrain):
+        checks.instance("terrain", terrain, Terrain)
+    checks.finite("terrain", level := checks.number("terrain", terrain))
+    return level
 
 
 def ground_and_top(
@@ -448,11 +467,11 @@ def filled_masks(name: str, values: npt.ArrayLike) -> np.ndarray:
 
 def checked_triangles(triangles: npt.ArrayLike, count: int) -> np.ndarray:
     """Triangles (T, 3) as numbers of points that there are."""
-    array = np.asarray(triangles)
+    array = whole_numbers("triangles", triangles)
     if array.size == 0:
         return checks.frozen(np.empty((0, 3)), np.int64)
-    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
-        raise ValueError(f"triangles must be whole numbers of shape (T, 3), got {array.dtype} of shape {array.shape}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"triangles must have shape (T, 3), got {array.shape}")
     wrong = array[(array < 0) | (array >= count)]
     if len(wrong):
         raise ValueError(f"triangles must be numbers of points, 0 to {count - 1}, got {wrong[0]}")

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from uavlab.city.extent import MOST_VOXELS
+from uavlab import checks
+from uavlab.city.extent import MOST_VOXELS, checked_cell
 from uavlab.city.model import City
 
 
@@ -58,7 +59,7 @@ def read_voxels(path: str | Path, *, cell: float = 1.0) -> City:
     >>> city, city.is_free([(1, 1, 1), (3, 1, 1)]).tolist()
     (<City maze: 4 × 3 × 2 voxels of 2 m, 0 buildings>, [False, True])
     """
-    path = Path(path)
+    path, cell = checks.path("path", path), checked_cell(cell)
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         header = file.readline().strip()
         empty = not any(line.strip() for line in file)

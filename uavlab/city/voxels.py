@@ -14,6 +14,12 @@ from uavlab.compiled import compiled
 TOUCH = 1e-9
 """What is nearer than this touches [cells]."""
 
+MOST_PASSED = 50_000_000
+"""A polyline through more voxels is refused: it would need gigabytes."""
+
+FARTHEST = 2.0**52
+"""From here on [cells] a float no longer tells where in its voxel a point is."""
+
 ROUNDING = 1e-12
 """Shares of a segment that differ by less are the same point."""
 
@@ -123,6 +129,23 @@ def voxels_on_segment(start, end):
             if crossing[axis] <= face + ROUNDING:
                 voxel[axis] += step[axis]
                 crossing[axis] += between[axis]
+
+
+def voxels_on_polyline(points: np.ndarray, cell: float, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Voxels that the legs between points (N, 3) [m], at least two, pass through, and their length in each [m]."""
+    cells = (points - origin) / cell
+    passed = np.abs(np.diff(cells, axis=0)).sum()
+    if passed > MOST_PASSED or np.abs(cells).max() > FARTHEST:
+        raise ValueError(
+            f"points must lie nearer to the map: they pass through about {passed:.2g} voxels of {cell:g} m, at most "
+            f"{MOST_PASSED:,} can be told apart"
+        )
+    voxels, lengths = [], []
+    for n in range(len(points) - 1):
+        index, leave = voxels_on_segment(cells[n], cells[n + 1])
+        voxels.append(index)
+        lengths.append(np.diff(leave, prepend=0.0) * np.linalg.norm(points[n + 1] - points[n]))
+    return np.concatenate(voxels), np.concatenate(lengths)
 
 
 @compiled

@@ -5,22 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 
 from uavlab import checks
-from uavlab.city.buildings import convex_parts, extrude, footprint_polygon
-from uavlab.city.documents import read_json
-from uavlab.city.footprints import Footprint, declared_system, features_of, footprints_of
-from uavlab.city.lengths import length_in_metres
-from uavlab.city.place import LOCAL, system_for
-from uavlab.city.source import Notes
-
-if TYPE_CHECKING:
-    from uavlab.city.model import City
+from uavlab.city.buildings import Building, convex_parts, extrude, footprint_polygon
+from uavlab.city.rasterise import touches
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +35,8 @@ class NoFlyZone:
     Raises
     ------
     ValueError
-        If `outline` or one of `holes` has fewer than three different corners or one that is not finite, they cross,
-        `lower` is not finite, or `upper` is not above `lower`.
+        If `outline` or one of `holes` hasn't shape (M, 2), has fewer than three different corners or one that is not
+        finite; they cross; `lower` is not finite, or `upper` not above it; or `name` is no text.
 
     See Also
     --------
@@ -72,10 +63,10 @@ class NoFlyZone:
 
     def __post_init__(self) -> None:
         for bound in ("lower", "upper"):
-            checks.number(bound, getattr(self, bound))
+            object.__setattr__(self, bound, checks.number(bound, getattr(self, bound)))
         if not (np.isfinite(self.lower) and self.upper > self.lower):
             raise ValueError(f"upper of {self.name!r} must be above its lower ({self.lower:g} m), got {self.upper:g} m")
-        polygon = footprint_polygon(self.outline, self.holes, self.name)
+        polygon = footprint_polygon(self.outline, self.holes, self.name, "outline")
         object.__setattr__(self, "outline", shapely.get_coordinates(polygon.exterior)[:-1])
         object.__setattr__(self, "holes", tuple(shapely.get_coordinates(ring)[:-1] for ring in polygon.interiors))
         for corners in (self.outline, *self.holes):
@@ -104,6 +95,11 @@ class NoFlyZone:
         list of (2M, 3) arrays
             Corners of each [m].
 
+        Raises
+        ------
+        ValueError
+            If `high` is not above `low`, or one of them is not finite.
+
         See Also
         --------
         City.zone_building : the zone as a body on a map, at its own heights above ground.
@@ -116,120 +112,31 @@ class NoFlyZone:
         >>> len(pieces), pieces[0].shape
         (4, (6, 3))
         """
+        low, high = checks.number("low", low), checks.number("high", high)
+        checks.finite("low", low)
+        checks.finite("high", high)
+        if not high > low:
+            raise ValueError(f"high must be above low ({low:g} m), got {high:g} m")
         return [extrude(part, low, high) for part in convex_parts(self.polygon)]
 
 
-def checked_zones(no_fly: object) -> tuple[NoFlyZone, ...]:
-    """No-fly zones as a tuple; one zone, or outlines (M, 2), are taken as well."""
-    if isinstance(no_fly, NoFlyZone):
-        return (no_fly,)
-    if not isinstance(no_fly, Sequence):
-        raise ValueError(f"no_fly must be a list of NoFlyZone, got {type(no_fly).__name__}")
-    for number, zone in enumerate(no_fly):
-        checks.instance(f"no_fly[{number}]", zone, NoFlyZone)
-    return tuple(no_fly)
-
-
-def read_no_fly(
-    path: str | Path,
-    city: City,
-    *,
-    lower: str | float = "lower",
-    upper: str | float = "upper",
-    crs: Any = None,
-) -> tuple[NoFlyZone, ...]:
-    """No-fly zones from the polygons of a GeoJSON file, for `dataclasses.replace(city, no_fly=...)`.
-
-    A point, a line or what else has no area gives no zone, which a warning says.
-
-    Parameters
-    ----------
-    path : str or Path
-        UTF-8 text, as for `read_geojson`.
-    city : City
-        On whose map they lie.
-    lower, upper : str or float
-        Properties that hold the limits above ground, a number of metres or a text like "400 ft", or one for all [m];
-        where they are absent, 0 and no upper limit.
-    crs : anything that pyproj takes, or "local", optional
-        The reference system of the coordinates, as for `read_geojson`; "local": the city's own metres,
-        as where neither file nor city knows where on Earth it lies.
-
-    Returns
-    -------
-    tuple of NoFlyZone
-        One for each polygon.
-
-    Raises
-    ------
-    ValueError
-        If the file at `path` is broken or has no polygon; `lower` or `upper` is neither a text nor a number, the height
-        that a zone has there can't be understood, or is out of the range of `NoFlyZone`; `crs` is no system that pyproj
-        knows; or `city` has no `reference` though the zones lie on Earth.
-    FileNotFoundError
-        If there is no file at `path`.
-
-    Warns
-    -----
-    UserWarning
-        If a feature has no area.
-
-    See Also
-    --------
-    NoFlyZone : one made by hand.
-    read_geojson : reads buildings from such a file.
-
-    Examples
-    --------
-    >>> import json, pathlib, tempfile
-    >>> from uavlab.city import read_no_fly, table1_city
-    >>> field = {"type": "Polygon", "coordinates": [[[0, 0], [30, 0], [30, 20], [0, 20], [0, 0]]]}
-    >>> zone = {"type": "Feature", "properties": {"name": "airfield", "upper": "400 ft"}, "geometry": field}
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = pathlib.Path(folder, "zones.geojson")
-    ...     _ = path.write_text(json.dumps(zone))
-    ...     zones = read_no_fly(path, table1_city(cell=5.0), crs="local")
-    >>> zones
-    (<NoFlyZone airfield: 4 corners, 0 to 121.92 m above ground>,)
-    """
-    for bound, limit in (("lower", lower), ("upper", upper)):
-        if not isinstance(limit, str | int | float | np.integer | np.floating):
-            raise ValueError(f"{bound} must be the name of a property, or a height in metres, got {limit!r:.60}")
-    path, notes = Path(path), Notes()
-    documents = read_json(path)
-    features = [feature for document in documents for feature in features_of(document, path)]
-    zones = footprints_of(features, notes, lambda properties: True)
-    if not zones:
-        raise ValueError(f"{path.name} has no polygon with an area, so no zone")
-    bounds = shapely.total_bounds([zone.polygons for zone in zones])
-    declared = declared_system(documents, path.name)
-    if declared is None and crs is None and city.reference is None:
-        crs = LOCAL  # neither knows where on Earth it lies
-    system = system_for(bounds, declared, crs, path.name)
-    polygons = np.array([zone.polygons for zone in zones], dtype=object)
-    if system is not None:
-        local = city.checked_reference().east_north(system.to_lonlat(shapely.get_coordinates(polygons)))
-        polygons = shapely.set_coordinates(polygons, local)
-    found = []
-    for zone, plan in zip(zones, polygons, strict=True):
-        low, high = limit_of(zone, lower, 0.0), limit_of(zone, upper, np.inf)
-        for polygon in plan.geoms:
-            holes = tuple(shapely.get_coordinates(ring) for ring in polygon.interiors)
-            found.append(NoFlyZone(shapely.get_coordinates(polygon.exterior), low, high, holes, zone.name))
-    notes.source(path.name, "GeoJSON").warn("They close nothing: draw an outline around each")
-    return tuple(found)
-
-
-def limit_of(zone: Footprint, limit: str | float, otherwise: float) -> float:
-    """A limit of a zone [m]; `ValueError` where it stands there and can't be understood."""
-    if not isinstance(limit, str):
-        return float(limit)
-    value = zone.properties.get(limit)
-    if value in (None, ""):
-        return otherwise
-    metres = length_in_metres(value)
-    if np.isnan(metres):
-        raise ValueError(
-            f"{limit} of {zone.label!r} must be a height in metres, such as 120 or '400 ft', got {value!r}"
+def body_of(
+    zone: NoFlyZone, ground: tuple[np.ndarray, np.ndarray], bounds: np.ndarray, shape: Sequence[int], cell: float
+) -> Building:
+    """A zone as a body on a map with these bounds (2, 3) [m], where the ground has these lowest and highest points."""
+    (low, high), column = bounds[:, 2], np.zeros(tuple(shape[:2]), dtype=bool)
+    for piece in zone.pieces(low, high):
+        column |= touches(Building((piece,)), shape, cell, bounds[0])
+    lowest, highest = ground
+    if column.any():
+        low, high = (
+            np.clip(zone.lower + lowest[column].min(), low, high - 1e-3),
+            np.clip(zone.upper + highest[column].max(), low + 1e-3, high),
         )
-    return metres
+    return Building(tuple(zone.pieces(low, max(high, low + 1e-3))), zone.name)
+
+
+def checked_zones(no_fly: object) -> tuple[NoFlyZone, ...]:
+    """No-fly zones as a tuple; one zone is taken as well."""
+    zones = [no_fly] if isinstance(no_fly, NoFlyZone) else no_fly
+    return tuple(checks.several("no_fly", zones, NoFlyZone, least=0))

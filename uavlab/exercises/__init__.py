@@ -10,6 +10,8 @@ import importlib
 from dataclasses import dataclass
 from typing import Any
 
+from uavlab import checks
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -43,13 +45,14 @@ def check(number: str, answer: Any) -> Verdict:
     Raises
     ------
     ValueError
-        If there is no such exercise.
+        If `number` is no text, or not that of an exercise.
 
     Examples
     --------
     >>> check("06.1", lambda dx, dy, dz: dx + dy + dz)
     06.1: not yet. That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.
     """
+    number = str(checks.text("number", number))
     chapter, _, exercise = number.partition(".")
     try:
         module = importlib.import_module(f"uavlab.exercises.chapter{chapter}")

@@ -79,7 +79,8 @@ class Autopilot:
     Raises
     ------
     ValueError
-        If `speed`, `acceptance_radius`, `interval`, `gps.rate`, `gps.correlation`, or the `speed_share`, the
+        If `controller`, `gps` or `monitor` is of another kind; `trimmed` or `heeds_limits` is neither True nor False;
+        `speed`, `acceptance_radius`, `interval`, `gps.rate`, `gps.correlation`, or the `speed_share`, the
         `natural_frequency` or the `tilt_share` of `controller` is not above 0; the `tilt_share` is above 1;
         `gps.drift`, `gps.vertical_drift` or `gps.velocity` is negative; or `strategy` is unknown.
 
@@ -109,19 +110,19 @@ class Autopilot:
     interval: float = 0.5
 
     def __post_init__(self) -> None:
-        for name in ("speed_share", "natural_frequency", "tilt_share"):
-            checks.positive_number(f"controller.{name}", getattr(self.controller, name))
-        if self.controller.tilt_share > 1:
-            raise ValueError(f"controller.tilt_share must be at most 1, got {self.controller.tilt_share:g}")
-        if self.speed is not None:
-            checks.positive_number("speed", self.speed)
-        for name in ("rate", "correlation"):
-            checks.positive_number(f"gps.{name}", getattr(self.gps, name))
-        for name in ("drift", "vertical_drift", "velocity"):
-            checks.not_negative_number(f"gps.{name}", getattr(self.gps, name))
-        checks.one_of("strategy", self.strategy, STRATEGIES)
-        checks.positive_number("acceptance_radius", self.acceptance_radius)
-        checks.positive_number("interval", self.interval)
+        if self.monitor is not None:
+            checks.instance("monitor", self.monitor, Monitor)
+        checked: dict[str, object] = {
+            "controller": checked_controller(self.controller),
+            "gps": checked_gps(self.gps),
+            "strategy": str(checks.one_of("strategy", self.strategy, STRATEGIES)),
+            "trimmed": checks.flag("trimmed", self.trimmed),
+            "heeds_limits": checks.flag("heeds_limits", self.heeds_limits),
+        }
+        for name in ("acceptance_radius", "interval", *(["speed"] if self.speed is not None else [])):
+            checked[name] = checks.positive_number(name, getattr(self, name))
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
     def __repr__(self) -> str:
         speed = "cruise speed" if self.speed is None else f"{self.speed:g} m/s"
@@ -131,6 +132,25 @@ class Autopilot:
             f"<Autopilot: {self.controller.name} controller, {speed}, mean wind {wind}, "
             f"GPS drift {self.gps.drift:g} m, {watched}>"
         )
+
+
+def checked_controller(controller: Controller) -> Controller:
+    """The controller, its fields as floats: a named tuple can't look at them itself."""
+    checks.instance("controller", controller, Controller)
+    checks.text("controller.name", controller.name)
+    names = ("speed_share", "natural_frequency", "tilt_share")
+    numbers = {name: checks.positive_number(f"controller.{name}", getattr(controller, name)) for name in names}
+    if numbers["tilt_share"] > 1:
+        raise ValueError(f"controller.tilt_share must be at most 1, got {numbers['tilt_share']:g}")
+    return Controller(controller.name, **numbers)
+
+
+def checked_gps(gps: Gps) -> Gps:
+    """The same of GPS."""
+    checks.instance("gps", gps, Gps)
+    above = {name: checks.positive_number(f"gps.{name}", getattr(gps, name)) for name in ("rate", "correlation")}
+    errors = ("drift", "vertical_drift", "velocity")
+    return Gps(**above, **{name: checks.not_negative_number(f"gps.{name}", getattr(gps, name)) for name in errors})
 
 
 AUTOPILOT = Autopilot()

@@ -8,10 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
+from uavlab.flight.autopilot import checked_controller
 from uavlab.offsets.exposure import spring_transition
 from uavlab.resilience import BASIC, Controller, basic_offset
 from uavlab.vehicle import GRAVITY, UAV
-from uavlab.weather.wind import Wind, gust_spectrum
+from uavlab.weather import Weather
+from uavlab.weather.wind import Wind, gust_spectrum, wind_of
 
 
 @dataclass(frozen=True)
@@ -37,8 +39,8 @@ class OffsetProcess:
     Raises
     ------
     ValueError
-        If `sigma` is negative, not finite or neither one number nor three, or `mean` is not two or three finite
-        numbers.
+        If `sigma` is negative, not finite or neither one number nor three, `mean` is not two or three finite numbers,
+        or `rough` is neither True nor False.
 
     See Also
     --------
@@ -63,10 +65,13 @@ class OffsetProcess:
     rough: bool = False
 
     def __post_init__(self) -> None:
-        checks.not_negative("sigma", self.sigma)
-        if np.shape(self.sigma) not in ((), (3,)):
-            raise ValueError(f"sigma must be one number or three (east, north, up), got shape {np.shape(self.sigma)}")
+        sigma = checks.numbers("sigma", self.sigma)
+        if sigma.shape not in ((), (3,)):
+            raise ValueError(f"sigma must be one number or three (east, north, up), got shape {sigma.shape}")
+        checks.not_negative("sigma", sigma)
+        object.__setattr__(self, "sigma", tuple(sigma.tolist()) if sigma.shape else float(sigma))
         object.__setattr__(self, "mean", checks.three("mean", self.mean))
+        object.__setattr__(self, "rough", checks.flag("rough", self.rough))
 
     def step(self, time_step: float, controller: Controller) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """How offset and speed go on in a time step, exactly for any step.
@@ -90,6 +95,11 @@ class OffsetProcess:
         noise : (2, 2) array
             B
 
+        Raises
+        ------
+        ValueError
+            If `time_step` is not above 0, or `controller` is no `Controller`.
+
         See Also
         --------
         fly : Takes such steps along a route.
@@ -104,19 +114,26 @@ class OffsetProcess:
         >>> transition.round(3)
         array([[ 0.999,  0.031], [-0.031,  0.938]])
         """
-        turn = controller.natural_frequency * time_step
-        if self.rough:  # no speed
-            keep = np.exp(-turn / 2)
-            transition, noise = np.diag([keep, 0.0]), np.diag([np.sqrt(1 - keep**2), 0.0])
-        else:
-            transition = spring_transition(turn)
-            noise = np.linalg.cholesky(np.eye(2) - transition @ transition.T)
-        return np.broadcast_to(self.sigma, 3) / basic_offset(controller), transition, noise
+        return stepped(self, checks.positive_number("time_step", time_step), checked_controller(controller))
+
+
+def stepped(
+    process: OffsetProcess, time_step: float, controller: Controller
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`OffsetProcess.step` of what was checked."""
+    turn = controller.natural_frequency * time_step
+    if process.rough:  # no speed
+        keep = np.exp(-turn / 2)
+        transition, noise = np.diag([keep, 0.0]), np.diag([np.sqrt(1 - keep**2), 0.0])
+    else:
+        transition = spring_transition(turn)
+        noise = np.linalg.cholesky(np.eye(2) - transition @ transition.T)
+    return np.broadcast_to(process.sigma, 3) / basic_offset(controller), transition, noise
 
 
 def offset_sigma(
     uav: UAV,
-    wind: Wind,
+    wind: Wind | Weather,
     *,
     ground_velocity: npt.ArrayLike = (0.0, 0.0, 0.0),
     altitude: float = 30.0,
@@ -132,7 +149,7 @@ def offset_sigma(
     ----------
     uav : UAV
         Its mass and drag area count.
-    wind : Wind
+    wind : Wind or Weather
         Its mean and gusts.
     ground_velocity : (2,) or (3,) array
         Of the UAV [m/s]; it hovers by default.
@@ -149,8 +166,9 @@ def offset_sigma(
     Raises
     ------
     ValueError
-        If `ground_velocity` is not two or three finite numbers, or that of the wind, so that the air stands still
-        relative to the UAV and small gusts have no force; or, for Dryden gusts, if `altitude` is out of its range.
+        If `uav`, `wind` or `controller` is of another kind; `ground_velocity` is not two or three finite numbers, or
+        that of the wind, so that the air stands still relative to the UAV and small gusts have no force; or
+        `altitude` is not above 0, or, for Dryden gusts, out of its range.
 
     See Also
     --------
@@ -167,10 +185,18 @@ def offset_sigma(
     """
     from scipy.integrate import quad
 
+    checks.instance("uav", uav, UAV)
+    if not isinstance(wind, Weather):
+        checks.instance("wind", wind, Wind)
+    wind, controller = wind_of(wind), checked_controller(controller)
+    altitude = checks.positive_number("altitude", altitude)
     stream = np.array(wind.mean) - checks.three("ground_velocity", ground_velocity)
     speed = float(np.linalg.norm(stream))
     if speed == 0:
-        raise ValueError("the air stands still relative to the UAV, so that small gusts have no force on it")
+        raise ValueError(
+            "ground_velocity must not be that of the wind: the air stands still relative to the UAV, so that small "
+            "gusts have no force on it"
+        )
     mass, natural = uav.weight / GRAVITY, controller.natural_frequency
     damping = np.array([2.0, 1.0, 1.0]) * 0.5 * wind.air_density * uav.drag_area * speed / mass
     variances = []

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uavlab.flight.autopilot import Autopilot
-from uavlab.flight.disturbance import OffsetProcess
+from uavlab.flight.disturbance import OffsetProcess, stepped
 from uavlab.flight.motion import drift_on, fly_on
 from uavlab.flight.path import Path
 from uavlab.flight.state import Air, Body, Course, Spring, State
@@ -52,7 +52,7 @@ def model_of(
 ) -> Model:
     """How a disturbance and a controller move the UAV along a path."""
     if isinstance(now, OffsetProcess):
-        sigma, keep, enter = now.step(time_step, controller)
+        sigma, keep, enter = stepped(now, time_step, controller)
         spring = Spring(np.array(now.mean), sigma, keep, enter, controller.natural_frequency, controller.speed_share)
         return Model(drift_on, (spring,), controller.speed_share)
     gps = autopilot.gps

@@ -310,9 +310,8 @@ def crash_rate(runs: Flights | Sequence[Flights]) -> Rate:
     >>> print(crash_rate(flights))
     70 [28.6, 139] per 1 000
     """
-    runs = [runs] if isinstance(runs, Flights) else list(runs)
+    runs = [runs] if isinstance(runs, Flights) else checks.several("runs", runs, Flights, least=0)
     for number, run in enumerate(runs):
-        checks.instance(f"runs[{number}]", run, Flights)
         if run.reason:
             raise ValueError(
                 f"runs[{number}] is grounded ({run.reason}), and what never flew can't crash: leave it out"

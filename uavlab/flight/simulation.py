@@ -133,7 +133,7 @@ def fly(
     rng : numpy.random.Generator or int
         The seed of `monte_carlo`, whose flight this is.
     number : int
-        Which of its flights, from 0 on.
+        Which of its flights, 0 to 999 999.
     time_step : float
         [s], above 0, at most 0.2/ω_n; 0.02 is usual.
 
@@ -149,7 +149,7 @@ def fly(
     ValueError
         If `route` doesn't arrive or has no length; `city`, `uav`, `disturbance` or `autopilot` is of another kind, or
         `disturbance` changes its kind in flight; the `speed_share` of the controller is not from 0.01 to 10; `number`
-        is no whole number or negative; `rng` is neither generator nor seed; or `time_step` is not above 0, above
+        is no whole number from 0 to 999 999; `rng` is neither generator nor seed; or `time_step` is not above 0, above
         0.2/ω_n, 0.04/ω_n for rough offsets or 1/`gps.rate` in a wind, or so short that the flight has more than
         5 million steps.
 
@@ -170,7 +170,7 @@ def fly(
     >>> fly(route, campus.city, campus.uav, Wind((6, 0)), rng=1)
     <Flight: arrived after 58.9 s>
     """
-    checks.whole("number", number, least=0)
+    checks.whole("number", number, least=0, most=MOST_FLIGHTS - 1)
     setup, grounded = setup_of(route, city, uav, disturbance, autopilot, time_step)
     if setup is None:
         return Flight("grounded", grounded, np.empty((0, len(COLUMNS))), np.inf, None)
@@ -218,8 +218,8 @@ def monte_carlo(
     Raises
     ------
     ValueError
-        If `flights` is no whole number from 1 to a million, `every` is not above 0, `jobs` is 0 or no whole number, or
-        another argument is wrong as for `fly`.
+        If `flights` is no whole number from 1 to a million, `every` is not above 0, `jobs` is 0 or no whole number,
+        `progress` is neither True nor False, or another argument is wrong as for `fly`.
 
     See Also
     --------
@@ -237,8 +237,9 @@ def monte_carlo(
     >>> monte_carlo(route, campus.city, campus.uav, OffsetProcess(1.5), rng=1, flights=100)
     <Flights: 93 arrived, 7 crashed>
     """
-    checks.whole("flights", flights, least=1, most=MOST_FLIGHTS)
-    checks.positive_number("every", every)
+    flights = checks.whole("flights", flights, least=1, most=MOST_FLIGHTS)
+    every = checks.positive_number("every", every)
+    checks.flag("progress", progress)
     setup, grounded = setup_of(route, city, uav, disturbance, autopilot, time_step)
     if setup is None:
         none = np.zeros(flights)

@@ -50,8 +50,9 @@ class OffsetModel:
     sigma: float
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "mean", checks.number("mean", self.mean))
+        object.__setattr__(self, "sigma", checks.positive_number("sigma", self.sigma))
         checks.finite("mean", self.mean)
-        checks.positive("sigma", self.sigma)
 
     @classmethod
     def fit(cls, samples: npt.ArrayLike) -> OffsetModel:
@@ -102,6 +103,11 @@ class OffsetModel:
         float or array
             n(x) [1/m], the shape of `x`.
 
+        Raises
+        ------
+        ValueError
+            If `x` is not made of numbers; infinite ones are right.
+
         See Also
         --------
         OffsetModel.beyond : the probability above an offset.
@@ -112,6 +118,7 @@ class OffsetModel:
         >>> OffsetModel(mean=0.0, sigma=0.5).density([0.0, 0.5, 1.5]).round(3)
         array([0.798, 0.484, 0.009])
         """
+        checks.within("x", x, -np.inf, np.inf, "m")
         z = (np.asarray(x, dtype=float) - self.mean) / self.sigma
         return np.exp(-0.5 * z**2) / (np.sqrt(2 * np.pi) * self.sigma)
 
@@ -130,6 +137,11 @@ class OffsetModel:
         float or array
             0 to 1, the shape of `x`.
 
+        Raises
+        ------
+        ValueError
+            If `x` is not made of numbers; infinite ones are right.
+
         See Also
         --------
         OffsetModel.quantile : the inverse.
@@ -141,6 +153,7 @@ class OffsetModel:
         >>> OffsetModel(mean=0.0, sigma=1.0).beyond([0.0, 1.0, 2.0, 3.0]).round(4)
         array([0.5   , 0.1587, 0.0228, 0.0013])
         """
+        checks.within("x", x, -np.inf, np.inf, "m")
         return ndtr((self.mean - np.asarray(x, dtype=float)) / self.sigma)
 
     def quantile(self, probability: npt.ArrayLike) -> np.ndarray:
@@ -205,7 +218,7 @@ class OffsetModel:
         >>> [round(model.boundary(share), 2) for share in (0.6827, 0.9545, 0.9973)]
         [1.5, 2.5, 3.5]
         """
-        return float(self.quantile((1 + checks.share("coverage", coverage)) / 2))
+        return float(self.quantile((1 + checks.share("coverage", checks.number("coverage", coverage))) / 2))
 
     def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
         """Independent offsets [m], (count,).
@@ -225,7 +238,7 @@ class OffsetModel:
         Raises
         ------
         ValueError
-            If `rng` is neither a generator nor a seed.
+            If `count` is no whole number of at least 0, or `rng` is neither a generator nor a seed.
 
         See Also
         --------
@@ -238,7 +251,7 @@ class OffsetModel:
         >>> f"μ = {drawn.mean():.1f} m, σ = {drawn.std():.1f} m"
         'μ = 0.5 m, σ = 1.0 m'
         """
-        return checks.generator("rng", rng).normal(self.mean, self.sigma, count)
+        return checks.generator("rng", rng).normal(self.mean, self.sigma, checks.whole("count", count, 0))
 
 
 @dataclass(frozen=True)
@@ -283,11 +296,14 @@ class SkewedOffset:
     turbulence_intensity: float
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "mean", checks.number("mean", self.mean))
+        object.__setattr__(self, "sigma", checks.positive_number("sigma", self.sigma))
+        intensity = checks.number("turbulence_intensity", self.turbulence_intensity)
+        object.__setattr__(self, "turbulence_intensity", intensity)
         checks.finite("mean", self.mean)
-        checks.positive("sigma", self.sigma)
-        if not 0 < self.turbulence_intensity <= 1:
+        if not 0 < intensity <= 1:
             raise ValueError(
-                f"turbulence_intensity must be above 0 and at most 1, got {self.turbulence_intensity!r}; "
+                f"turbulence_intensity must be above 0 and at most 1, got {intensity:g}; "
                 "without turbulence use OffsetModel"
             )
 
@@ -326,7 +342,7 @@ class SkewedOffset:
         >>> f"μ = {model.mean:.2f} m, σ = {model.sigma:.2f} m"
         'μ = 1.09 m, σ = 0.61 m'
         """
-        checks.positive("steady_offset", steady_offset)
+        steady_offset = checks.positive_number("steady_offset", steady_offset)
         shape = cls(0.0, 1.0, turbulence_intensity)
         mean, sigma, _ = shape.force_moments
         return cls(steady_offset * mean, steady_offset * sigma, turbulence_intensity)
@@ -408,6 +424,11 @@ class SkewedOffset:
         float or array
             [1/m], the shape of `x`.
 
+        Raises
+        ------
+        ValueError
+            If `x` is not made of numbers; infinite ones are right.
+
         See Also
         --------
         SkewedOffset.beyond : the probability above an offset.
@@ -418,6 +439,7 @@ class SkewedOffset:
         >>> SkewedOffset(mean=0.0, sigma=1.0, turbulence_intensity=0.3).density([-2.0, 0.0, 2.0]).round(3)
         array([0.   , 0.386, 0.059])
         """
+        checks.within("x", x, -np.inf, np.inf, "m")
         mean, sigma, _ = self.force_moments
         slope = np.abs(mean + sigma * (np.asarray(x, dtype=float) - self.mean) / self.sigma) ** 0.5
         with np.errstate(divide="ignore"):
@@ -438,6 +460,11 @@ class SkewedOffset:
         -------
         float or array
             0 to 1, the shape of `x`.
+
+        Raises
+        ------
+        ValueError
+            If `x` is not made of numbers; infinite ones are right.
 
         See Also
         --------
@@ -514,7 +541,7 @@ class SkewedOffset:
         >>> [round(model.boundary(share), 2) for share in (0.6827, 0.9545, 0.9973)]
         [0.98, 2.4, 4.11]
         """
-        return float(self.quantile((1 + checks.share("coverage", coverage)) / 2))
+        return float(self.quantile((1 + checks.share("coverage", checks.number("coverage", coverage))) / 2))
 
     def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
         """Independent offsets [m], (count,).
@@ -534,7 +561,7 @@ class SkewedOffset:
         Raises
         ------
         ValueError
-            If `rng` is neither a generator nor a seed.
+            If `count` is no whole number of at least 0, or `rng` is neither a generator nor a seed.
 
         See Also
         --------
@@ -547,7 +574,7 @@ class SkewedOffset:
         >>> f"μ = {drawn.mean():.1f} m, σ = {drawn.std():.1f} m"
         'μ = 1.0 m, σ = 0.5 m'
         """
-        return self.offset_of(checks.generator("rng", rng).standard_normal(count))
+        return self.offset_of(checks.generator("rng", rng).standard_normal(checks.whole("count", count, 0)))
 
     def offset_of(self, gust: npt.ArrayLike) -> np.ndarray:
         """Offset [m] when the wind is `gust` standard deviations above its mean.
@@ -564,6 +591,11 @@ class SkewedOffset:
         float or array
             x [m], the shape of `gust`.
 
+        Raises
+        ------
+        ValueError
+            If `gust` is not made of numbers; infinite ones are right.
+
         See Also
         --------
         SkewedOffset.gust_of : the inverse.
@@ -575,6 +607,7 @@ class SkewedOffset:
         >>> model.offset_of([-3.0, 0.0, 3.0]).round(2)
         array([0.01, 1.  , 3.61])
         """
+        checks.within("gust", gust, -np.inf, np.inf, "standard deviations")
         mean, sigma, _ = self.force_moments
         speed = 1 + self.turbulence_intensity * np.asarray(gust, dtype=float)
         return self.mean + self.sigma * (np.abs(speed) * speed - mean) / sigma
@@ -592,6 +625,11 @@ class SkewedOffset:
         float or array
             z, the shape of `x`.
 
+        Raises
+        ------
+        ValueError
+            If `x` is not made of numbers; infinite ones are right.
+
         See Also
         --------
         SkewedOffset.offset_of : the inverse.
@@ -603,6 +641,7 @@ class SkewedOffset:
         >>> model.gust_of([1.0, 2.0, 4.0]).round(2)  # twice the wind pushes four times as far
         array([0.  , 1.38, 3.33])
         """
+        checks.within("x", x, -np.inf, np.inf, "m")
         mean, sigma, _ = self.force_moments
         force = mean + sigma * (np.asarray(x, dtype=float) - self.mean) / self.sigma
         return (np.sign(force) * np.sqrt(np.abs(force)) - 1) / self.turbulence_intensity

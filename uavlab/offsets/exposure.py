@@ -53,7 +53,7 @@ def crossing_rate(margin: npt.ArrayLike, sigma: npt.ArrayLike, natural_frequency
     """
     checks.finite("margin", margin)
     checks.positive("sigma", sigma)
-    checks.positive("natural_frequency", natural_frequency)
+    natural_frequency = checks.positive_number("natural_frequency", natural_frequency)
     z = np.asarray(margin, dtype=float) / np.asarray(sigma, dtype=float)
     return natural_frequency / (2 * np.pi) * np.exp(-0.5 * z**2)
 
@@ -121,9 +121,9 @@ def collision_probability(
     """
     checks.not_negative("distance", distance)
     checks.positive("sigma", sigma)
-    checks.positive("natural_frequency", natural_frequency)
+    natural_frequency = checks.positive_number("natural_frequency", natural_frequency)
     checks.not_negative("duration", duration)
-    checks.not_negative("uav_diameter", uav_diameter)
+    uav_diameter = checks.not_negative_number("uav_diameter", uav_diameter)
     checks.finite("mean_away", mean_away)
     margin = np.asarray(distance, dtype=float) - uav_diameter / 2 + np.asarray(mean_away, dtype=float)
     z = margin / np.asarray(sigma, dtype=float)
@@ -175,9 +175,9 @@ def offset_paths(
     Raises
     ------
     ValueError
-        If `sigma`, `step` or `natural_frequency` is not above 0, `duration` is less than `step` or not finite, `step`
-        is below 0.0001/`natural_frequency`, `count` is no whole number of at least 1, or `rng` is neither a generator
-        nor a seed.
+        If `sigma`, `step` or `natural_frequency` is not above 0, `duration` is less than `step`, not finite or more
+        than 1,000,000,000 steps, `step` is below 0.0001/`natural_frequency`, `count` is no whole number of at least 1,
+        `rough` is not True or False, or `rng` is neither a generator nor a seed.
 
     See Also
     --------
@@ -197,19 +197,20 @@ def offset_paths(
     >>> f"{(offset > 2.0).mean():.1%} of the time beyond 2σ, {(offset > 2.0).any(axis=1).mean():.0%} of the paths ever"
     '2.3% of the time beyond 2σ, 46% of the paths ever'
     """
-    for name, value in (("sigma", sigma), ("step", step), ("natural_frequency", natural_frequency)):
-        checks.positive(name, value)
-    checks.whole("count", count, 1)
-    checks.number("duration", duration)
+    sigma, step = checks.positive_number("sigma", sigma), checks.positive_number("step", step)
+    natural_frequency = checks.positive_number("natural_frequency", natural_frequency)
+    count, duration = checks.whole("count", count, 1), checks.number("duration", duration)
     if not step <= duration < np.inf:
         raise ValueError(f"duration must be finite and at least one step of {step:g} s, got {duration!r}")
+    if duration / step > checks.MOST:
+        raise ValueError(f"duration must be at most {checks.MOST:,} steps of {step:g} s, got {duration:g}")
     steps, turn = round(duration / step), natural_frequency * step
     if turn < 1e-4:
         raise ValueError(
             f"step must be at least 0.0001/natural_frequency for its noise to be told from 0, got {step:g}"
         )
     generator = checks.generator("rng", rng)
-    if rough:
+    if checks.flag("rough", rough):
         transition, stationary = np.array([[np.exp(-turn / 2)]]), np.eye(1)
     else:
         transition, stationary = spring_transition(turn), np.eye(2)

@@ -38,8 +38,8 @@ class JointOffset:
     Raises
     ------
     ValueError
-        If `mean` or `sigma` is not two finite numbers, one of `sigma` is not above 0, or `correlation` is not between
-        −1 and 1, without the ends.
+        If `mean` or `sigma` is not two finite numbers, one of `sigma` is not above 0, or `correlation` is not one
+        number between −1 and 1, without the ends.
 
     See Also
     --------
@@ -67,10 +67,11 @@ class JointOffset:
             if pair.shape != (2,):
                 raise ValueError(f"{name} must be two numbers, one for each axis, got shape {pair.shape}")
             object.__setattr__(self, name, tuple(pair.tolist()))
+        object.__setattr__(self, "correlation", checks.number("correlation", self.correlation))
         checks.finite("mean", self.mean)
         checks.positive("sigma", self.sigma)
         if not -1 < self.correlation < 1:
-            raise ValueError(f"correlation must be between -1 and 1, without the ends, got {self.correlation!r}")
+            raise ValueError(f"correlation must be between -1 and 1, without the ends, got {self.correlation:g}")
 
     def __repr__(self) -> str:
         (one, two), (first, second) = self.mean, self.sigma
@@ -137,7 +138,7 @@ class JointOffset:
         Raises
         ------
         ValueError
-            If `points` is not of shape (..., 2).
+            If `points` is not of shape (..., 2) or not finite.
 
         See Also
         --------
@@ -168,7 +169,7 @@ class JointOffset:
         Raises
         ------
         ValueError
-            If `points` is not of shape (..., 2).
+            If `points` is not of shape (..., 2) or not finite.
 
         See Also
         --------
@@ -187,9 +188,7 @@ class JointOffset:
         >>> model.radius_in_sigma([(2.0, 0.0), (0.0, 2.0)])
         array([2., 4.])
         """
-        where = checks.numbers("points", points)
-        if where.shape[-1:] != (2,):
-            raise ValueError(f"points must have shape (..., 2), got {where.shape}")
+        where = checks.array("points", points, ..., 2)
         u, v = np.moveaxis((where - self.mean) / self.sigma, -1, 0)
         return np.sqrt((u**2 - 2 * self.correlation * u * v + v**2) / (1 - self.correlation**2))
 
@@ -213,7 +212,7 @@ class JointOffset:
         Raises
         ------
         ValueError
-            If `coverage` is not between 0 and 1, without the ends.
+            If `coverage` is not between 0 and 1, without the ends, or `count` is no whole number of at least 2.
 
         See Also
         --------
@@ -226,7 +225,7 @@ class JointOffset:
         >>> outline.shape, outline.max(axis=0).round(2)
         ((181, 2), array([3.44, 1.72]))
         """
-        angle = np.linspace(0, 2 * np.pi, count)
+        angle = np.linspace(0, 2 * np.pi, checks.whole("count", count, 2))
         circle = pauta_radius(2, coverage) * np.column_stack([np.cos(angle), np.sin(angle)])
         return self.mean + circle @ np.linalg.cholesky(self.covariance).T
 
@@ -266,7 +265,7 @@ class JointOffset:
         """
         from scipy.integrate import quad
 
-        checks.not_negative("radius", radius)
+        radius = checks.not_negative_number("radius", radius)
         variance, axes = np.linalg.eigh(self.covariance)
         (mean, other_mean), (sigma, other_sigma) = self.mean @ axes, np.sqrt(variance)
 
@@ -309,7 +308,7 @@ class JointOffset:
         """
         from scipy.optimize import brentq
 
-        share = checks.share("coverage", coverage)
+        share = checks.share("coverage", checks.number("coverage", coverage))
         widest = np.sqrt(np.linalg.eigvalsh(self.covariance)[-1])
         around_ellipse = np.hypot(*self.mean) + 1.01 * pauta_radius(2, coverage) * widest
         return float(brentq(lambda radius: self.within_circle(radius) - share, 0.0, around_ellipse, xtol=1e-12))
@@ -332,7 +331,7 @@ class JointOffset:
         Raises
         ------
         ValueError
-            If `rng` is neither a generator nor a seed.
+            If `count` is no whole number of at least 0, or `rng` is neither a generator nor a seed.
 
         See Also
         --------
@@ -346,6 +345,7 @@ class JointOffset:
         >>> drawn.shape, drawn.std(axis=0).round(1)
         ((10000, 2), array([1. , 0.5]))
         """
+        count = checks.whole("count", count, 0)
         return checks.generator("rng", rng).multivariate_normal(self.mean, self.covariance, count, method="cholesky")
 
 

@@ -83,7 +83,7 @@ def pauta_radius(dimensions: int, coverage: float = PAUTA_COVERAGE) -> float:
     >>> [round(pauta_radius(dimensions), 3) for dimensions in (1, 2, 3)]
     [3.0, 3.439, 3.763]
     """
-    share = checks.share("coverage", coverage)
+    share = checks.share("coverage", checks.number("coverage", coverage))
     return float(np.sqrt(2 * gammaincinv(checked_dimensions(dimensions) / 2, share)))
 
 
@@ -157,6 +157,7 @@ def pauta_filter(samples: npt.ArrayLike, radius_in_sigma: float = 3.0) -> Filter
     >>> pauta_filter(offsets)
     <Filtered: 197 of 200 samples kept, rounds: 2, mean 0.012 m, σ 0.970 m>
     """
+    radius_in_sigma = checks.number("radius_in_sigma", radius_in_sigma)
     checks.at_least_one("radius_in_sigma", radius_in_sigma)
     values = checks.samples(samples, least=2)
     farthest = (len(values) - 1) / np.sqrt(len(values))
@@ -225,7 +226,7 @@ def minimum_safe_distance(
     array([4. , 3.5])
     """
     checks.not_negative("offset", offset)
-    checks.positive("uav_diameter", uav_diameter)
+    uav_diameter = checks.positive_number("uav_diameter", uav_diameter)
     distance = np.asarray(offset, dtype=float) + uav_diameter / 2
     if mean_offset is None and normal is None:
         return distance[()]
@@ -241,6 +242,7 @@ def minimum_safe_distance(
 
 
 def checked_dimensions(dimensions: int) -> int:
-    if dimensions not in (1, 2, 3):
+    whole = isinstance(dimensions, int | np.integer) and not isinstance(dimensions, bool)
+    if not whole or dimensions not in (1, 2, 3):
         raise ValueError(f"dimensions must be 1, 2 or 3, got {dimensions!r}")
     return dimensions

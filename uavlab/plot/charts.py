@@ -30,6 +30,9 @@ from uavlab.plot.style import (
 )
 from uavlab.route import Route
 
+MOST_BARS = 1000
+"""In one figure."""
+
 
 def front(routes: Sequence[Route], *marked: Route | Mapping[str, Route], label: str = "risk ∫ r ds/dx [1/h]") -> Figure:
     """Length against risk (the routes' `cost`): a Pareto front as a line with its points, other routes marked.
@@ -51,8 +54,8 @@ def front(routes: Sequence[Route], *marked: Route | Mapping[str, Route], label: 
     Raises
     ------
     ValueError
-        If `routes` is no sequence of `Route` or none of them arrives, or one of `marked` is neither a route nor a
-        mapping of routes.
+        If `routes` is no list of `Route` or none of them arrives, one of `marked` is neither a route nor a mapping of
+        routes, one that arrives has no cost, or `label` is no text.
 
     See Also
     --------
@@ -68,11 +71,12 @@ def front(routes: Sequence[Route], *marked: Route | Mapping[str, Route], label: 
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_yscale()
     ('length [m]', 'log')
     """
-    if not isinstance(routes, Sequence):
-        raise ValueError(f"routes must be a list, as from pareto_front, got {type(routes).__name__}")
-    others = [route for one in marked for route in named_routes(one)]
-    for route in routes:
-        checks.instance("routes", route, Route)
+    routes = checks.several("routes", routes, Route, least=0)
+    others = [route for one in marked for route in named_routes(one, "marked")]
+    checks.text("label", label)
+    for name, ways in (("routes", routes), ("marked", others)):
+        if any(route.reached and np.isnan(route.cost) for route in ways):
+            raise ValueError(f"{name} must have a cost, as those of planners; RiskMap.integral(route) gives it")
     if not any(route.reached for route in routes):
         why = f": {routes[0].reason}" if routes else ", it is empty"
         raise ValueError(f"routes must hold one that arrives{why}")
@@ -136,12 +140,10 @@ def convergence(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('evaluations made', 'gap to the exact optimum')
     """
-    if not isinstance(comparison, Comparison):
-        raise ValueError(f"comparison must be a Comparison, as from compare_planners, got {type(comparison).__name__}")
-    if by not in ("evaluations", "iterations"):
-        raise ValueError(f"by must be 'evaluations' or 'iterations', got {by!r}")
+    checks.instance("comparison", comparison, Comparison)
+    checks.one_of("by", by, ("evaluations", "iterations"))
     if until is not None:
-        checks.whole("until", until, least=2)
+        until = checks.whole("until", until, least=2)
     if len(comparison.planners) > len(CONVERGENCE_STYLES):
         raise ValueError(f"comparison must have at most {len(CONVERGENCE_STYLES)} planners, to tell their lines apart")
     figure, axes = new_figure(8.4, 4.4)
@@ -225,7 +227,7 @@ def profile(city: City, *routes: Drawn, safe_distance: float | None = None) -> F
     """
     planned = drawn_routes(city, routes)
     if safe_distance is not None:
-        checks.positive_number("safe_distance", safe_distance)
+        safe_distance = checks.positive_number("safe_distance", safe_distance)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7.2, 4.6), dpi=DPI, layout="constrained")
     zero = datum_of(city) or 0.0
     drawn = [(route, color) for route, color in zip(planned, route_colors(len(planned)), strict=True)
@@ -277,13 +279,13 @@ def tops_below(city: City, points: np.ndarray) -> np.ndarray:
     return city.origin[2] + city.cell * np.where(below.any(axis=1), layers, 0)
 
 
-def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
+def bars(values: Mapping[str, float], label: str, *, title: str = "") -> Figure:
     """Named values as horizontal bars, each with its number.
 
     Parameters
     ----------
     values : dict of float
-        By name, drawn from top to bottom.
+        By name, drawn from top to bottom, at most a thousand; NaN has no bar.
     label : str
         The quantity and its unit, below the axis.
     title : str
@@ -293,6 +295,12 @@ def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
     -------
     matplotlib.figure.Figure
         One panel, a bar for each name.
+
+    Raises
+    ------
+    ValueError
+        If `values` are no numbers by name, one of them is infinite, or they are more than a thousand, or `label` or
+        `title` is no text.
 
     See Also
     --------
@@ -306,9 +314,17 @@ def bars(values: dict[str, float], label: str, *, title: str = "") -> Figure:
     >>> [text.get_text() for text in figure.axes[0].texts]
     ['66.4', '63.9']
     """
-    figure, axes = plt.subplots(figsize=(6.4, 0.5 * len(values) + 1.1), dpi=DPI, layout="constrained")
-    drawn = axes.barh([plain(name) for name in values], list(values.values()), color=ROUTE_COLORS[1])
-    axes.bar_label(drawn, [f"{v:,.0f}" if abs(v) >= 100 else f"{v:.3g}" for v in values.values()], padding=3)
+    checks.text("label", label)
+    checks.text("title", title)
+    named = checks.by_name("values", values, least=0)
+    lengths = [checks.number(f"values[{name!r}]", value) for name, value in named.items()]
+    if np.isinf(lengths).any():
+        raise ValueError(f"values must be finite, or NaN for no bar, got {lengths}")
+    if len(lengths) > MOST_BARS:
+        raise ValueError(f"values must be at most {MOST_BARS:,}, got {len(lengths):,}")
+    figure, axes = plt.subplots(figsize=(6.4, 0.5 * len(lengths) + 1.1), dpi=DPI, layout="constrained")
+    drawn = axes.barh([plain(name) for name in named], lengths, color=ROUTE_COLORS[1])
+    axes.bar_label(drawn, [f"{v:,.0f}" if abs(v) >= 100 else f"{v:.3g}" for v in lengths], padding=3)
     axes.invert_yaxis()
     axes.xaxis.set_major_formatter("{x:,g}")
     axes.set_xlabel(label)

@@ -20,10 +20,10 @@ from uavlab.plot.style import (
     ROUTE_COLORS,
     Drawn,
     draw_map,
-    drawn_routes,
     finished,
     label_of,
     level_of,
+    named_routes,
     plain,
     route_colors,
 )
@@ -49,7 +49,7 @@ def curve_profile(
     cell : float
         Edge of a voxel [m], above 0; 1 to 5 is usual.
     bank, max_pitch : float
-        Limits of the bank, below π/2, and of the pitch [rad], above 0.
+        Limits of the bank, below π/2, and of the pitch, at most π/2 [rad], above 0.
 
     Returns
     -------
@@ -59,8 +59,8 @@ def curve_profile(
     Raises
     ------
     ValueError
-        If `curves` is empty or holds anything else than curves, or `speed`, `cell`, `bank` or `max_pitch` is not
-        above 0.
+        If `curves` is empty or holds anything else than curves, `speed`, `cell`, `bank` or `max_pitch` is not above 0,
+        `bank` is not below π/2, or `max_pitch` is above it.
 
     See Also
     --------
@@ -79,8 +79,13 @@ def curve_profile(
     ['papers: 1 per\\nvoxel of 5 m', '30° of bank\\nat 8 m/s']
     """
     drawn = drawn_curves(curves)
-    for name, value in (("speed", speed), ("cell", cell), ("bank", bank), ("max_pitch", max_pitch)):
+    speed, cell, bank, max_pitch = (
         checks.positive_number(name, value)
+        for name, value in (("speed", speed), ("cell", cell), ("bank", bank), ("max_pitch", max_pitch))
+    )
+    if not bank < np.pi / 2:
+        raise ValueError(f"bank must be below π/2 rad (degrees? np.radians makes radians of them), got {bank:g}")
+    checks.within("max_pitch", max_pitch, 0.0, np.pi / 2, "rad (degrees? np.radians makes radians of them)")
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8.4, 5.4), dpi=DPI, layout="constrained")
     for curve, color in zip(drawn, route_colors(len(drawn)), strict=True):
         above.plot(curve.distance, finite_or_nan(curve.curvature), color=color, label=plain(curve.planner))
@@ -162,12 +167,13 @@ def corner(
     >>> figure.axes[0].get_title()
     'through: 0.00 m clear, κ ≤ 0.33 1/m'
     """
-    planned = drawn_routes(city, () if route is None else (route,))
+    checks.instance("city", city, City)
+    planned = [] if route is None else named_routes(route, "route")
     drawn = drawn_curves(curves)
-    x, y, z = checks.three("center", center)
-    for name, value in (("reach", reach), ("uav_diameter", uav_diameter)):
-        checks.positive_number(name, value)
-    k = level_of(city, z)
+    x, y, z = checks.array("center", center, 3).tolist()
+    reach = checks.positive_number("reach", reach)
+    uav_diameter = checks.positive_number("uav_diameter", uav_diameter)
+    k = level_of(city, z, "center's height")
     layer = np.where(city.occupied[:, :, k], 1.0, np.nan)
     figure, panels = plt.subplots(1, len(drawn), figsize=(0.8 + 3.7 * len(drawn), 4.4), dpi=DPI, squeeze=False,
                                   sharey=True, layout="constrained")  # fmt: skip

@@ -8,6 +8,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
+from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -24,6 +25,7 @@ from uavlab.plot.style import (
     ROUTE_COLORS,
     SEQUENTIAL,
     add_color_bar,
+    area_of,
     draw_map,
     drawn_routes,
     finished,
@@ -55,7 +57,7 @@ def tracks(
         What was to be flown, for some of the names or for others; drawn dashed, with a square where one that doesn't
         arrive ends.
     area : (west, east, south, north), optional
-        Part of the map to show [m]; by default all of it.
+        Part of the map to show [m], on the map at least in part; by default all of it.
 
     Returns
     -------
@@ -66,7 +68,8 @@ def tracks(
     ------
     ValueError
         If `city` is no `City`, `flights` and `routes` together have no name, what stands behind a name in `flights`
-        isn't flights, or what stands behind one in `routes` is neither a route nor a curve.
+        isn't flights, what stands behind one in `routes` is neither a route nor a curve, or `area` is not four finite
+        numbers, each second one above the one before it, or lies beside the map.
 
     See Also
     --------
@@ -85,12 +88,14 @@ def tracks(
     >>> plot.tracks(campus.city, {"least risk": [flight]}).axes[0].get_title()
     'least risk: 0 of 1 crash'
     """
-    planned = {route.planner: route for route in drawn_routes(city, [routes or {}])}
-    named = {name: list(named_flights(flights.get(name, ())).values()) for name in (planned | dict(flights))}
+    planned = {route.planner: route for route in drawn_routes(city, () if routes is None else (routes,))}
+    if not isinstance(flights, Mapping):
+        raise ValueError(f"flights must be lists by name, as in {{'A*': [flight]}}, got {type(flights).__name__}")
+    made = {str(name): list(named_flights(listed).values()) for name, listed in flights.items()}
+    named = {name: made.get(name, []) for name in planned | made}
     if not named:
         raise ValueError("flights is empty: give at least one name, as in {'A*': [flight]}")
-    (west, south, _), (east, north, _) = city.bounds
-    west, east, south, north = (west, east, south, north) if area is None else area
+    west, east, south, north = area_of(city, area)
     height = 3.1 * (north - south) / (east - west) + 1.2
     figure, panels = plt.subplots(1, len(named), figsize=(3.1 * len(named) + 0.5, height), dpi=DPI, squeeze=False,
                                   sharey=True, layout="constrained")  # fmt: skip
@@ -102,12 +107,8 @@ def tracks(
         ends = np.array([flight.position[-1, :2] for flight in flown if flight.outcome == "crashed"]).reshape(-1, 2)
         title = f"{plain(name)}: {len(ends)} of {len(flown)} crash" if flown else plain(name)
         if name in planned:
-            way = planned[name]
-            axes.plot(*way.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2)
-            axes.plot(*way.points[:1, :2].T, "o", color=ROUTE_COLORS[2], markersize=7)
-            mark = "^" if way.reached else "s"
-            axes.plot(*way.points[-1:, :2].T, mark, color=ROUTE_COLORS[2], markersize=7)
-            title = title if way.reached else f"{plain(name)}: doesn't arrive"
+            draw_planned(axes, planned[name])
+            title = title if planned[name].reached else f"{plain(name)}: doesn't arrive"
         axes.plot(*ends.T, "x", color=CRASH_COLOR, markersize=8, markeredgewidth=2, zorder=5)
         axes.set(xlim=(west, east), ylim=(south, north))
         axes.set_title(title, fontsize=10)
@@ -127,6 +128,13 @@ def tracks(
     return finished(figure)
 
 
+def draw_planned(axes: Axes, route: Route) -> None:
+    """What was to be flown, dashed: a disc where it starts, a triangle at its goal, a square where it got stuck."""
+    axes.plot(*route.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2)
+    axes.plot(*route.points[:1, :2].T, "o", color=ROUTE_COLORS[2], markersize=7)
+    axes.plot(*route.points[-1:, :2].T, "^" if route.reached else "s", color=ROUTE_COLORS[2], markersize=7)
+
+
 def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01) -> Figure:
     """Crashes per 1 000 flights with their intervals on a logarithmic scale, a group for each case.
 
@@ -137,7 +145,7 @@ def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01)
     rates : mapping of mappings
         Case → planner → what `uavlab.flight.crash_rate` returns; one to six planners.
     least : float
-        Where the axis begins [crashes per 1 000 flights], above 0.
+        Where the axis begins [crashes per 1 000 flights], above 0 and below 1 000.
 
     Returns
     -------
@@ -147,7 +155,8 @@ def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01)
     Raises
     ------
     ValueError
-        If `rates` has no planner or more than six, or `least` is not above 0.
+        If `rates` aren't rates by planner by case, have no planner or more than six, or `least` is not above 0 or not
+        below 1 000.
 
     See Also
     --------
@@ -163,10 +172,14 @@ def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01)
     >>> [label.get_text() for label in figure.axes[0].get_yticklabels()]
     ['calm', 'gusts']
     """
+    cases = checks.by_name("rates", rates, least=0)
+    rates = {case: checks.by_name(f"rates[{case!r}]", cases[case], Rate, least=0) for case in cases}
     planners = list(dict.fromkeys(name for by_planner in rates.values() for name in by_planner))
     if not 1 <= len(planners) <= len(ROUTE_COLORS):
         raise ValueError(f"rates must hold one to {len(ROUTE_COLORS)} planners, got {len(planners)}")
-    checks.positive_number("least", least)
+    least = checks.positive_number("least", least)
+    if least >= 1000:
+        raise ValueError(f"least must be below 1,000 crashes per 1,000 flights, got {least:g}")
     figure, axes = new_figure(8.6, 0.62 * len(rates) * max(len(planners) / 4, 0.7) + 1.5)
     apart = 0.8 / len(planners)
     for number, (name, color, marker) in enumerate(zip(planners, ROUTE_COLORS, "osD^vP", strict=False)):
@@ -210,7 +223,8 @@ def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
     Raises
     ------
     ValueError
-        If `flights` holds anything else than flights, none that flew, or more than six that did.
+        If `flights` holds anything else than flights, none that flew, or more than six that did, or one of `limits` is
+        no finite number.
 
     See Also
     --------
@@ -231,6 +245,9 @@ def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
     flown = {name: flight for name, flight in named_flights(flights).items() if len(flight.log)}
     if not 1 <= len(flown) <= len(CONVERGENCE_STYLES):
         raise ValueError(f"flights must hold one to {len(CONVERGENCE_STYLES)} that flew, got {len(flown)}")
+    limits = {name: checks.number(name, limit) for name, limit in limits.items()}
+    for name, limit in limits.items():
+        checks.finite(name, limit)
     figure, panels = plt.subplots(3, 1, figsize=(8.6, 6.4), dpi=DPI, sharex=True, layout="constrained")
     quantities = ("across", "offset across the route,\nleft is positive [m]"), ("speed", "speed over ground\n[m/s]")
     for axes, (column, label) in zip(panels, (*quantities, ("thrust", "thrust [N]")), strict=True):
@@ -271,8 +288,8 @@ def safety_domain(samples: npt.ArrayLike, **domains: SafetyDomain) -> Figure:
     Raises
     ------
     ValueError
-        If `samples` hasn't shape (N, 2), isn't finite, has fewer than 3 rows or is constant on an axis, or there are
-        more than three `domains`.
+        If `samples` hasn't shape (N, 2), isn't finite, has fewer than 3 rows or is constant on an axis, there are more
+        than three `domains`, or one of them is no `SafetyDomain`.
 
     See Also
     --------
@@ -291,6 +308,8 @@ def safety_domain(samples: npt.ArrayLike, **domains: SafetyDomain) -> Figure:
     points = checks.samples(samples, least=3, axes=2)
     if len(domains) > 3:
         raise ValueError(f"domains must be at most three, got {len(domains)}")
+    for name, domain in domains.items():
+        checks.instance(name, domain, SafetyDomain)
     outlines = [domain.ellipse for domain in domains.values()]
     reach = 1.15 * max([np.quantile(np.abs(points), 0.9995), *(np.abs(outline).max() for outline in outlines)])
     figure, axes = new_figure(6.6, 5.6)
@@ -318,7 +337,7 @@ def named_flights(flights: Sequence[Flight] | Mapping[str, Flight]) -> dict[str,
     named = flights if isinstance(flights, Mapping) else {f"flight {n + 1}": f for n, f in enumerate(flights)}
     for flight in named.values():
         checks.instance("flights", flight, Flight)
-    return dict(named)
+    return {str(name): flight for name, flight in named.items()}
 
 
 def track(flight: Flight) -> tuple[np.ndarray, np.ndarray]:

@@ -29,6 +29,7 @@ from uavlab.plot.style import (
     SEQUENTIAL,
     Drawn,
     add_color_bar,
+    area_of,
     draw_map,
     draw_routes,
     drawn_routes,
@@ -36,6 +37,7 @@ from uavlab.plot.style import (
     level_of,
     new_figure,
     plain,
+    with_gaps,
 )
 from uavlab.risk import RiskMap
 
@@ -97,7 +99,7 @@ RISK_LABEL = "risk r [deaths per hour of flight]"
 def section(
     city: City,
     height: float,
-    values: np.ndarray | None = None,
+    values: npt.ArrayLike | None = None,
     *routes: Drawn,
     label: str = "clearance [m]",
     norm: Normalize | None = None,
@@ -113,7 +115,7 @@ def section(
     height : float
         Where to cut, z [m], on the map.
     values : (nx, ny, nz) array, optional
-        What to colour, a value for each voxel; the clearance by default.
+        What to colour, a value for each voxel; the clearance by default. Where it is NaN or masked, the map is black.
     routes : Route or Curve, or mapping
         Seen from above.
     label : str
@@ -129,7 +131,8 @@ def section(
     Raises
     ------
     ValueError
-        If `city` is no `City`, `height` lies outside of the map, or one of `routes` is neither a route nor a curve.
+        If `city` is no `City`, `height` lies outside of the map, `values` haven't the city's shape, one of `routes` is
+        neither a route nor a curve, `label` is no text, or `norm` is no `Normalize`.
 
     See Also
     --------
@@ -145,9 +148,13 @@ def section(
     'Table 1, 30 m above the ground (buildings black)'
     """
     planned = drawn_routes(city, routes)
+    height = checks.number("height", height)
     k = level_of(city, height)
+    layer = layer_of(city, city.clearance if values is None else values, k)
+    checks.text("label", label)
+    if norm is not None:
+        checks.instance("norm", norm, Normalize)
     figure, axes = new_figure(6.4, 5.4)
-    layer = (city.clearance if values is None else np.asarray(values))[:, :, k]
     image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL, norm=norm)
     add_color_bar(figure, axes, image, label)
     axes.set_facecolor("black")
@@ -156,6 +163,18 @@ def section(
     draw_routes(axes, planned)
     axes.set_title(title_of(city, height, "buildings black"))
     return finished(figure)
+
+
+def layer_of(city: City, values: npt.ArrayLike, k: int) -> np.ndarray:
+    """One layer of values of all voxels (nx, ny, nz), as floats: the others are left as they are."""
+    every = values if isinstance(values, np.ndarray) else checks.numbers("values", values)
+    if every.shape != city.shape:
+        raise ValueError(f"values must have the city's shape {city.shape}, got {every.shape}")
+    return with_gaps(every[:, :, k])
+
+
+MOST_ARROWS = 100_000
+"""In a field; nobody could tell more apart."""
 
 
 def field(
@@ -180,9 +199,9 @@ def field(
     routes : Route or Curve, or mapping
         Seen from above.
     area : (west, east, south, north), optional
-        Part of the map to show [m]; by default all of it.
+        Part of the map to show [m], on the map at least in part; by default all of it.
     spacing : float
-        From arrow to arrow [m], above 0.
+        From arrow to arrow [m], above 0, so that there are at most 100 000; 2 to 5 is usual.
     setting
         Of the field, as for `uavlab.planners.potential_forces`: `pull`, `push`, `reach`, `attraction`, `obstacles`.
 
@@ -195,8 +214,9 @@ def field(
     ------
     ValueError
         If `city` is no `City`, `height` lies outside of the map, `goal` is not three finite numbers, one of `routes`
-        is neither a route nor a curve, `spacing` is not above 0, or one of `setting` is wrong as for
-        `uavlab.planners.potential_forces`.
+        is neither a route nor a curve, `area` is not four finite numbers, each second one above the one before it, or
+        lies beside the map, or has no free point at that height, `spacing` is not above 0, or so small that there are
+        more than 100 000 arrows, or one of `setting` is wrong as for `uavlab.planners.potential_forces`.
 
     See Also
     --------
@@ -216,9 +236,12 @@ def field(
     'potential U [unit of force · m]'
     """
     planned = drawn_routes(city, routes)
-    checks.positive("spacing", spacing)
+    height, spacing = checks.number("height", height), checks.positive_number("spacing", spacing)
     k = level_of(city, height)
-    west, east, south, north = (*city.bounds[:, 0], *city.bounds[:, 1]) if area is None else area
+    west, east, south, north = area_of(city, area)
+    least = np.sqrt((east - west) * (north - south) / MOST_ARROWS)
+    if spacing < least:
+        raise ValueError(f"spacing must be at least {least:.2g} m on this area, got {spacing:g}")
 
     def sampled(step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         x, y = np.meshgrid(np.arange(west + step / 2, east, step), np.arange(south + step / 2, north, step))
@@ -227,10 +250,12 @@ def field(
         free = city.is_free(points)
         return points, np.where(free[..., None], pull + push, np.nan), np.where(free, potential, np.nan)
 
+    points, _, potential = sampled(max(east - west, north - south) / 200)
+    if not np.isfinite(potential).any():
+        raise ValueError(f"area must have a free point {height:g} m high, to have a field there")
     figure, axes = new_figure(6.4, 5.4)
     draw_map(axes, city, np.where(city.occupied[:, :, k], 1.0, np.nan), "gray_r", vmin=0, vmax=1)
     draw_cut(axes, city, k)
-    points, _, potential = sampled(max(east - west, north - south) / 200)
     levels = MaxNLocator(20).tick_values(np.nanmin(potential), np.nanquantile(potential, 0.93))  # walls rise out of it
     image = axes.contourf(*points[..., :2].T, potential.T, levels, cmap=SEQUENTIAL, extend="max")
     axes.contour(*points[..., :2].T, potential.T, levels, colors="white", linewidths=0.4)
@@ -289,7 +314,7 @@ def risk(risk_map: RiskMap, height: float, *routes: Drawn) -> Figure:
     'reference campus, 30 m above the ground (too low hatched)'
     """
     checks.instance("risk_map", risk_map, RiskMap)
-    city = risk_map.city
+    city, height = risk_map.city, checks.number("height", height)
     k = level_of(city, height)
     figure = section(city, height, risk_map.rate, *routes, label=RISK_LABEL, norm=risk_norm(risk_map))
     closed = city.in_no_fly if city.no_fly else city.occupied
@@ -405,9 +430,10 @@ def expansions(city: City, *routes: Drawn) -> Figure:
 
 
 def risk_norm(risk_map: RiskMap) -> LogNorm:
-    """From risk to colours by factors: from the least above 0 to the greatest where the UAV may fly, or farther down.
+    """From risk to colours, on a logarithmic scale, from the least above 0 to the greatest where the UAV may fly.
 
-    It spans a factor of ten at least, so that nearly equal risks look so, and the bar can be read.
+    It spans a factor of ten at least, farther down if need be, so that nearly equal risks look so, and the bar can be
+    read.
 
     Parameters
     ----------
@@ -418,6 +444,11 @@ def risk_norm(risk_map: RiskMap) -> LogNorm:
     -------
     matplotlib.colors.LogNorm
         0 at the least risk, 1 at the greatest; what lies beyond is clipped.
+
+    Raises
+    ------
+    ValueError
+        If `risk_map` is no `RiskMap`.
 
     See Also
     --------
@@ -432,6 +463,7 @@ def risk_norm(risk_map: RiskMap) -> LogNorm:
     >>> f"{norm.vmin:.1e} to {norm.vmax:.1e} deaths per hour of flight"
     '2.7e-08 to 1.6e-05 deaths per hour of flight'
     """
+    checks.instance("risk_map", risk_map, RiskMap)
     rates = risk_map.rate[risk_map.flyable & (risk_map.rate > 0)]
     least, most = (rates.min(), rates.max()) if len(rates) else (1e-9, 1e-9)
     return LogNorm(min(least, most / 10), most, clip=True)
@@ -450,6 +482,11 @@ def ground_risk(risk_map: RiskMap) -> np.ndarray:
     (nx, ny) array
         r [1/h], deaths per hour of flight.
 
+    Raises
+    ------
+    ValueError
+        If `risk_map` is no `RiskMap`.
+
     See Also
     --------
     risk : A figure of the risk at a height.
@@ -463,5 +500,6 @@ def ground_risk(risk_map: RiskMap) -> np.ndarray:
     >>> plot.ground_risk(campus).shape == campus.city.shape[:2]
     True
     """
+    checks.instance("risk_map", risk_map, RiskMap)
     lowest = risk_map.flyable.argmax(axis=2)
     return np.take_along_axis(risk_map.rate, lowest[..., None], axis=2)[..., 0]

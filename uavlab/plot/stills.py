@@ -15,6 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from scipy.ndimage import maximum_filter
 
+from uavlab import checks
 from uavlab.city import City
 from uavlab.flight import Flight
 from uavlab.plot.flights import cross, label_of_flight, named_flights, track
@@ -71,8 +72,8 @@ def still(
     Raises
     ------
     ValueError
-        If `city` is no `City`, one of `routes` is neither a route nor a curve, `risk` is no `RiskMap`, or `flights`
-        holds anything else than flights.
+        If `city` is no `City`, one of `routes` is neither a route nor a curve, `risk` is no `RiskMap` of this city,
+        `flights` holds anything else than flights, or `elevation_deg` or `azimuth_deg` is no finite number.
 
     See Also
     --------
@@ -90,6 +91,9 @@ def still(
     ('z, up [m]', -120.0)
     """
     planned = drawn_routes(city, routes, risk)
+    named = named_flights(flights)
+    for name, angle in (("elevation_deg", elevation_deg), ("azimuth_deg", azimuth_deg)):
+        checks.finite(name, checks.number(name, angle))
     figure = plt.figure(figsize=(7.2, 5.4), dpi=DPI)
     axes: Any = figure.add_axes((0, 0.04, 1, 0.9), projection="3d", computed_zorder=False)
     low, high = city.bounds
@@ -116,7 +120,6 @@ def still(
         axes.add_collection3d(Poly3DCollection(walls, zorder=8, facecolors=ZONE_COLOR, alpha=0.2, edgecolors="none"))
         axes.add_collection3d(Line3DCollection(edges.reshape(-1, 2, 3), zorder=8, colors=ZONE_COLOR, linewidths=0.8))
         axes.plot([], [], [], color=ZONE_COLOR, linewidth=6, alpha=0.4, label=plain(zone_label(zones)))
-    named = named_flights(flights)
     ways = [(label_of(route), route, 0.4 if named else 1.0) for route in planned]
     ways += [(plain(label_of_flight(name, flight)), Route(track(flight)[1]), 1.0) for name, flight in named.items()]
     for (label, way, thickness), color in zip(ways, route_colors(len(ways)), strict=True):
@@ -142,7 +145,7 @@ def still(
     axes.set(xlabel="x, east [m]", ylabel="y, north [m]", zlabel="z, up [m]", title=plain(city.name))
     axes.set_box_aspect(high - low, zoom=0.95)
     axes.zaxis.set_major_locator(MaxNLocator(2 + round(4 * (high - low)[2] / longest)))
-    axes.view_init(elevation_deg, azimuth_deg)
+    axes.view_init(float(elevation_deg), float(azimuth_deg))
     if ways or zones:
         axes.legend(loc="upper left", fontsize=8)
     return finished(figure)

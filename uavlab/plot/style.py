@@ -8,8 +8,9 @@ from dataclasses import replace
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex
+from matplotlib.colors import Colormap, to_hex
 from matplotlib.figure import Figure
 
 from uavlab import checks
@@ -24,6 +25,10 @@ CRASH_COLOR = "#D00000"
 """Of an X; nothing else has that shape, for readers to whom red is brown."""
 SEQUENTIAL = matplotlib.colormaps["cividis"]
 DPI = 100
+MOST_INCHES = 650
+"""Along a side of a figure; matplotlib can't save larger ones in this resolution."""
+MOST_COLORS = 1_000_000
+"""More of them aren't asked for in earnest."""
 
 
 def route_colors(count: int) -> list[str]:
@@ -32,12 +37,17 @@ def route_colors(count: int) -> list[str]:
     Parameters
     ----------
     count : int
-        How many routes.
+        How many routes, 0 to a million.
 
     Returns
     -------
     list of str
         As #rrggbb.
+
+    Raises
+    ------
+    ValueError
+        If `count` is no whole number from 0 to a million.
 
     See Also
     --------
@@ -54,6 +64,7 @@ def route_colors(count: int) -> list[str]:
     >>> plot.route_colors(2)
     ['#D55E00', '#0072B2']
     """
+    count = checks.whole("count", count, 0, MOST_COLORS)
     return [ROUTE_COLORS[i % len(ROUTE_COLORS)] for i in range(count)]
 
 
@@ -62,14 +73,35 @@ def sequential_color(share: float) -> str:
     return to_hex(SEQUENTIAL(share))
 
 
-def level_of(city: City, height: float) -> int:
+def level_of(city: City, height: float, name: str = "height") -> int:
     """Index of the layer of voxels at a height [m]; `ValueError` if it lies outside of the map."""
-    checks.number("height", height)
+    height = checks.number(name, height)
     k = int(city.cell_of((city.origin[0], city.origin[1], height))[2])
     if not 0 <= k < city.shape[2]:
         low, high = city.bounds[:, 2]
-        raise ValueError(f"height must lie on the map, {low:g} to {high:g} m, got {height!r}")
+        raise ValueError(f"{name} must lie on the map, {low:g} to {high:g} m, got {height:g}")
     return k
+
+
+def area_of(city: City, area: tuple[float, float, float, float] | None) -> tuple[float, float, float, float]:
+    """West, east, south and north end [m] of what is to be shown, which is all of the map by default."""
+    (left, lowest), (right, highest) = city.bounds[:, :2].tolist()
+    if area is None:
+        return left, right, lowest, highest
+    west, east, south, north = checks.array("area", area, 4).tolist()
+    if not (west < east and south < north):
+        raise ValueError(f"area must be (west, east, south, north), each from less to more, got {area!r:.60}")
+    if not (west < right and east > left and south < highest and north > lowest):
+        map_words = f"{left:g} to {right:g} m east, {lowest:g} to {highest:g} m north"
+        raise ValueError(f"area must lie on the map, {map_words}, got {area!r:.60}")
+    return west, east, south, north
+
+
+def with_gaps(values: npt.ArrayLike) -> np.ndarray:
+    """Values as floats, what is masked as NaN, which isn't drawn."""
+    if not isinstance(values, np.ma.MaskedArray):
+        return checks.numbers("values", values)
+    return np.where(np.ma.getmaskarray(values), np.nan, checks.numbers("values", np.ma.getdata(values)))
 
 
 Drawn = Route | Way | Mapping[str, Route | Way]
@@ -81,14 +113,16 @@ def drawn_routes(city: City, routes: Sequence[Drawn], risk_map: RiskMap | None =
     checks.instance("city", city, City)
     if risk_map is not None:
         checks.instance("risk", risk_map, RiskMap)
+        if risk_map.city.shape != city.shape or not np.array_equal(risk_map.city.bounds, city.bounds):
+            raise ValueError(f"risk must be a map of the same city, got one of {risk_map.city!r}, city is {city!r}")
     return tuple(route for one in routes for route in named_routes(one))
 
 
-def named_routes(drawn: Drawn) -> list[Route]:
+def named_routes(drawn: Drawn, argument: str = "routes") -> list[Route]:
     """A route or several, each with its name as its planner."""
     if not isinstance(drawn, Mapping):
-        return [as_route(drawn, "routes")]
-    return [replace(as_route(way, f"routes[{name!r}]"), planner=str(name)) for name, way in drawn.items()]
+        return [as_route(drawn, argument)]
+    return [replace(as_route(way, f"{argument}[{name!r}]"), planner=str(name)) for name, way in drawn.items()]
 
 
 def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
@@ -97,7 +131,7 @@ def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
     Parameters
     ----------
     width, height : float
-        [inches], above 0; 6.4 and 4 to 5.4 are usual.
+        [inches], above 0, at most 650; 6.4 and 4 to 5.4 are usual.
 
     Returns
     -------
@@ -105,6 +139,11 @@ def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
         To be given to `finished` in the end.
     axes : matplotlib.axes.Axes
         To draw on.
+
+    Raises
+    ------
+    ValueError
+        If `width` or `height` is not above 0, or above 650.
 
     See Also
     --------
@@ -118,10 +157,13 @@ def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
     >>> plot.finished(figure).get_size_inches().tolist()
     [6.4, 4.0]
     """
-    return plt.subplots(figsize=(width, height), dpi=DPI, layout="constrained")
+    size = checks.positive_number("width", width), checks.positive_number("height", height)
+    for name, value in zip(("width", "height"), size, strict=True):
+        checks.within(name, value, 0.0, MOST_INCHES, "inches")
+    return plt.subplots(figsize=size, dpi=DPI, layout="constrained")
 
 
-def draw_map(axes: Axes, city: City, values: np.ndarray, colors, **limits):
+def draw_map(axes: Axes, city: City, values: npt.ArrayLike, colors, **limits):
     """Values on the ground plan, with axes in metres and equal scales.
 
     Parameters
@@ -131,7 +173,7 @@ def draw_map(axes: Axes, city: City, values: np.ndarray, colors, **limits):
     city : City
         Whose columns of voxels the values belong to.
     values : (nx, ny) array
-        One for each column, in any unit; NaN leaves it out.
+        One for each column, in any unit; where it is NaN or masked, nothing is drawn.
     colors : str or matplotlib.colors.Colormap
         Such as `SEQUENTIAL`.
     limits
@@ -141,6 +183,12 @@ def draw_map(axes: Axes, city: City, values: np.ndarray, colors, **limits):
     -------
     matplotlib.image.AxesImage
         For a colour bar.
+
+    Raises
+    ------
+    ValueError
+        If `axes` are no axes of matplotlib, `city` is no `City`, `values` hasn't shape (nx, ny), `colors` is no colour
+        map nor the name of one, or `vmin` or `vmax` among the `limits` is not finite.
 
     See Also
     --------
@@ -157,9 +205,19 @@ def draw_map(axes: Axes, city: City, values: np.ndarray, colors, **limits):
     >>> axes.get_xlabel(), axes.get_aspect(), image.get_array().shape
     ('x, east [m]', 1.0, (100, 100))
     """
+    checks.instance("axes", axes, Axes)
+    checks.instance("city", city, City)
+    shown = checks.array("values", with_gaps(values), *city.shape[:2], finite=False)
+    named = isinstance(colors, str) and colors in matplotlib.colormaps
+    if not (colors is None or named or isinstance(colors, Colormap)):
+        raise ValueError(f"colors must be a colour map of matplotlib or the name of one, got {colors!r:.60}")
+    for name in ("vmin", "vmax"):
+        if limits.get(name) is not None:
+            limits[name] = checks.number(name, limits[name])
+            checks.finite(name, limits[name])
     (west, south, _), (east, north, _) = city.bounds
     axes.set(xlabel="x, east [m]", ylabel="y, north [m]", aspect="equal")
-    return axes.imshow(values.T, origin="lower", extent=(west, east, south, north), cmap=colors, **limits)
+    return axes.imshow(shown.T, origin="lower", extent=(west, east, south, north), cmap=colors, **limits)
 
 
 def add_color_bar(figure: Figure, axes: Axes, image, label: str):
@@ -201,6 +259,11 @@ def finished(figure: Figure) -> Figure:
     matplotlib.figure.Figure
         The same one; it can still be saved.
 
+    Raises
+    ------
+    ValueError
+        If `figure` is none of matplotlib.
+
     See Also
     --------
     new_figure : Begins a figure.
@@ -212,5 +275,6 @@ def finished(figure: Figure) -> Figure:
     >>> plot.finished(figure) is figure
     True
     """
+    checks.instance("figure", figure, Figure)
     plt.close(figure)
     return figure

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from uavlab import checks
-from uavlab.prediction.generator import FEATURES, median_offsets, offset_class, simulate_offsets
+from uavlab.prediction.generator import FEATURES, checked_channelling, median_offsets, offset_class, simulate_offsets
 from uavlab.requirements import require
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
 from uavlab.weather import greensboro_weather
@@ -42,8 +42,8 @@ class Setting:
     Raises
     ------
     ValueError
-        If `noise`, `wind_scale` or `wind_shape` is not above 0, `channelling` is not from 0 to below 1, or
-        `class_count` is no whole number of at least 2.
+        If `noise`, `wind_scale` or `wind_shape` is not above 0, `channelling` is not from 0 to below 1, `class_count`
+        is no whole number of at least 2, or `real_weather` is not True or False.
 
     See Also
     --------
@@ -66,12 +66,11 @@ class Setting:
     real_weather: bool = False
 
     def __post_init__(self) -> None:
-        checks.positive("noise", self.noise)
-        checks.positive("wind_scale", self.wind_scale)
-        checks.positive("wind_shape", self.wind_shape)
-        if not 0 <= self.channelling < 1:
-            raise ValueError(f"channelling must be from 0 to below 1, got {self.channelling!r}")
-        checks.whole("class_count", self.class_count, 2)
+        for name in ("noise", "wind_scale", "wind_shape"):
+            object.__setattr__(self, name, checks.positive_number(name, getattr(self, name)))
+        object.__setattr__(self, "channelling", checked_channelling(self.channelling))
+        object.__setattr__(self, "class_count", checks.whole("class_count", self.class_count, 2))
+        object.__setattr__(self, "real_weather", checks.flag("real_weather", self.real_weather))
 
 
 SETTINGS: Mapping[str, Setting] = {
@@ -181,9 +180,9 @@ def synthetic_weather(
     >>> f"wind of {mean:.1f} m/s on average, above {strong:.0f} m/s in one hour of 100"
     'wind of 3.5 m/s on average, above 9 m/s in one hour of 100'
     """
-    checks.whole("count", count, 0)
-    checks.positive("wind_scale", wind_scale)
-    checks.positive("wind_shape", wind_shape)
+    count = checks.whole("count", count, 0)
+    wind_scale = checks.positive_number("wind_scale", wind_scale)
+    wind_shape = checks.positive_number("wind_shape", wind_shape)
     rng = checks.generator("rng", rng)
     day, hour = rng.uniform(0, 365, count), rng.uniform(0, 24, count)
     season, warmth = np.cos(2 * np.pi * (day - 200) / 365), np.cos(2 * np.pi * (hour - 15) / 24)
@@ -235,8 +234,8 @@ def make_dataset(
     Raises
     ------
     ValueError
-        If `setting` is unknown, `count` is no whole number of at least 2 or above the hours of real weather,
-        `train_count` is not from 1 to `count` − 1, or `rng` is neither a generator nor a seed.
+        If `setting` is unknown, `uav` is no UAV, `count` is no whole number of at least 2 or above the hours of real
+        weather, `train_count` is not from 1 to `count` − 1, or `rng` is neither a generator nor a seed.
 
     See Also
     --------
@@ -252,10 +251,9 @@ def make_dataset(
     >>> f"{(data.classes == 1).mean():.0%} of the flights stay within 1 m"
     '42% of the flights stay within 1 m'
     """
-    if isinstance(setting, str):
-        setting = SETTINGS[checks.one_of("setting", setting, SETTINGS)]
-    checks.whole("count", count, 2)
-    checks.whole("train_count", train_count, 1)
+    setting = known_setting(setting)
+    checks.instance("uav", uav, UAV)
+    count, train_count = checks.whole("count", count, 2), checks.whole("train_count", train_count, 1)
     if train_count >= count:
         raise ValueError(f"train_count must be from 1 to count - 1 = {count - 1}, got {train_count!r}")
     rng = checks.generator("rng", rng)
@@ -273,3 +271,11 @@ def make_dataset(
     train[rng.permutation(count)[:train_count]] = True
     classes = offset_class(offsets, setting.class_count)
     return Dataset(features, offsets, classes, np.log(median), setting.noise, setting.class_count, train, setting)
+
+
+def known_setting(setting: str | Setting) -> Setting:
+    """A setting, or the one of this name."""
+    if isinstance(setting, str):
+        return SETTINGS[checks.one_of("setting", setting, SETTINGS)]
+    checks.instance("setting", setting, Setting)
+    return setting

@@ -84,8 +84,8 @@ def median_offsets(
     ValueError
         If `channelling` is not from 0 to below 1, `height_factor`, `convective_wind`, `stiffness` or `still_offset` is
         not above 0, `mechanical_turbulence`, `convective_turbulence` or `peak_factor` is negative, or `street_axis_deg`
-        is not finite. If `weather` lacks a column or has a value outside of its range. If `uav` has no thrust left
-        against the wind.
+        is not finite. If `weather` is no table, lacks a column or has a value that is no number or outside of its
+        range. If `uav` is no UAV, or has no thrust left against the wind.
 
     See Also
     --------
@@ -102,20 +102,20 @@ def median_offsets(
     >>> [round(float(median_offsets(weather, LIGHT_QUADROTOR)[0]), 1) for weather in (along, across)]
     [7.5, 1.9]
     """
+    checks.instance("uav", uav, UAV)
+    street_axis_deg, channelling = checks.number("street_axis_deg", street_axis_deg), checked_channelling(channelling)
     checks.finite("street_axis_deg", street_axis_deg)
-    checks.positive("height_factor", height_factor)
-    checks.positive("convective_wind", convective_wind)
-    checks.positive("stiffness", stiffness)
-    checks.positive("still_offset", still_offset)
-    checks.not_negative("mechanical_turbulence", mechanical_turbulence)
-    checks.not_negative("convective_turbulence", convective_turbulence)
-    checks.not_negative("peak_factor", peak_factor)
-    if not 0 <= channelling < 1:
-        raise ValueError(f"channelling must be from 0 to below 1, got {channelling!r}")
+    height_factor = checks.positive_number("height_factor", height_factor)
+    convective_wind = checks.positive_number("convective_wind", convective_wind)
+    stiffness = checks.positive_number("stiffness", stiffness)
+    still_offset = checks.positive_number("still_offset", still_offset)
+    mechanical_turbulence = checks.not_negative_number("mechanical_turbulence", mechanical_turbulence)
+    convective_turbulence = checks.not_negative_number("convective_turbulence", convective_turbulence)
+    peak_factor = checks.not_negative_number("peak_factor", peak_factor)
     reserve = uav.horizontal_reserve()
     if reserve <= 0:
         raise ValueError(f"uav has no thrust left against the wind: {uav.name}, carry less")
-    table = feature_table(weather)
+    table = feature_table(weather, argument="weather")
     temperature, humidity, pressure, wind, wind_from, radiation = table.to_numpy(dtype=float).T
     checks.not_negative("wind_speed", wind)
     checks.not_negative("radiation", radiation)
@@ -125,6 +125,13 @@ def median_offsets(
     gust = wind * height_factor * street * (1.0 + peak_factor * turbulence)
     drag = 0.5 * density * uav.drag_area * gust**2
     return still_offset + stiffness * drag / reserve
+
+
+def checked_channelling(channelling: float) -> float:
+    channelling = checks.number("channelling", channelling)
+    if not 0 <= channelling < 1:
+        raise ValueError(f"channelling must be from 0 to below 1, got {channelling!r}")
+    return channelling
 
 
 def simulate_offsets(
@@ -172,7 +179,7 @@ def simulate_offsets(
     >>> f"{(ratio > 1).mean():.1f} of the offsets are above the median, {(ratio > 1.49).mean():.3f} above 1.49 times it"
     '0.5 of the offsets are above the median, 0.022 above 1.49 times it'
     """
-    checks.not_negative("noise", noise)
+    noise = checks.not_negative_number("noise", noise)
     median = median_offsets(weather, uav, **site)
     return median * np.exp(noise * checks.generator("rng", rng).standard_normal(len(median)))
 
@@ -209,9 +216,9 @@ def offset_class(offsets: npt.ArrayLike, class_count: int = 6) -> np.ndarray:
     >>> offset_class([0.0, 1.0, 1.01, 3.5, 20.0])
     array([1, 1, 2, 4, 6])
     """
-    checks.whole("class_count", class_count, 2)
+    class_count = checks.whole("class_count", class_count, 2)
     checks.not_negative("offsets", offsets)
-    return np.clip(np.ceil(offsets), 1, class_count).astype(int)
+    return np.clip(np.ceil(np.asarray(offsets, dtype=float)), 1, class_count).astype(int)
 
 
 def class_probabilities(log_median: npt.ArrayLike, noise: float, class_count: int = 6) -> np.ndarray:
@@ -236,7 +243,8 @@ def class_probabilities(log_median: npt.ArrayLike, noise: float, class_count: in
     Raises
     ------
     ValueError
-        If `log_median` is not finite, `noise` is not above 0, or `class_count` is no whole number of at least 2.
+        If `log_median` is not of shape (N,) or not finite, `noise` is not above 0, or `class_count` is no whole number
+        of at least 2.
 
     See Also
     --------
@@ -251,11 +259,10 @@ def class_probabilities(log_median: npt.ArrayLike, noise: float, class_count: in
     array([[0.03, 0.89, 0.08, 0.  ],
            [0.  , 0.5 , 0.47, 0.03]])
     """
-    checks.whole("class_count", class_count, 2)
-    checks.positive("noise", noise)
-    checks.finite("log_median", log_median)
-    middle = np.atleast_1d(np.asarray(log_median, dtype=float))[:, None]
-    below = ndtr((np.log(np.arange(1, class_count)) - middle) / noise)
+    class_count = checks.whole("class_count", class_count, 2)
+    noise = checks.positive_number("noise", noise)
+    middle = checks.array("log_median", np.atleast_1d(checks.numbers("log_median", log_median)), None)
+    below = ndtr((np.log(np.arange(1, class_count)) - middle[:, None]) / noise)
     return np.diff(below, axis=1, prepend=0.0, append=1.0)
 
 
@@ -277,7 +284,8 @@ def bayes_accuracy(log_median: npt.ArrayLike, noise: float, class_count: int = 6
     Raises
     ------
     ValueError
-        If `log_median` is not finite, `noise` is not above 0, or `class_count` is no whole number of at least 2.
+        If `log_median` is empty, not of shape (N,) or not finite, `noise` is not above 0, or `class_count` is no whole
+        number of at least 2.
 
     See Also
     --------
@@ -291,19 +299,22 @@ def bayes_accuracy(log_median: npt.ArrayLike, noise: float, class_count: int = 6
     >>> [round(bayes_accuracy(np.log([median]), noise=0.21), 2) for median in (1.5, 2.0)]  # in a class, and between two
     [0.89, 0.5]
     """
-    return float(class_probabilities(log_median, noise, class_count).max(axis=1).mean())
+    chances = class_probabilities(log_median, noise, class_count)
+    if not len(chances):
+        raise ValueError("log_median must have at least one value, got none")
+    return float(chances.max(axis=1).mean())
 
 
-def feature_table(weather: Any, names: tuple[str, ...] = FEATURES) -> pandas.DataFrame:
+def feature_table(weather: Any, names: tuple[str, ...] = FEATURES, argument: str = "features") -> pandas.DataFrame:
     """The named columns of a weather, in order and without gaps, as a table; raises ValueError as `checked_columns`."""
-    table = checked_columns(weather, names)
+    table = checked_columns(weather, names, argument)
     wrong = missing_values(table)
     if wrong:
-        raise ValueError(f"{wrong}; leave these rows out, or fill the gaps")
+        raise ValueError(f"{argument}: {wrong}; leave these rows out, or fill the gaps")
     return table
 
 
-def checked_columns(weather: Any, names: tuple[str, ...] = FEATURES) -> pandas.DataFrame:
+def checked_columns(weather: Any, names: tuple[str, ...] = FEATURES, argument: str = "features") -> pandas.DataFrame:
     """The named columns in this order; a ValueError lists those that are missing, and what there is instead."""
     pandas = require("pandas", "prediction")
     if isinstance(weather, Weather):
@@ -315,19 +326,31 @@ def checked_columns(weather: Any, names: tuple[str, ...] = FEATURES) -> pandas.D
             "wind_from_deg": [weather.wind_from_deg],
             "radiation": [weather.radiation],
         }
-    if not hasattr(weather, "keys"):
-        raise ValueError(f"features must be a table with the columns {', '.join(names)}, got {type(weather).__name__}")
-    if isinstance(weather, pandas.DataFrame):
-        table = weather
-    else:
-        one_row = not any(np.ndim(value) for value in dict(weather).values())
-        table = pandas.DataFrame(dict(weather), index=[0] if one_row else None)
-    missing = [name for name in names if name not in table.columns]
+    if isinstance(weather, type) or not hasattr(weather, "keys"):
+        got = type(weather).__name__
+        raise ValueError(f"{argument} must be a table with the columns {', '.join(names)}, got {got}")
+    table = weather if isinstance(weather, pandas.DataFrame) else table_of(dict(weather), argument)
+    columns = list(table.columns)
+    missing = [name for name in names if name not in columns]
     if missing:
-        others = [str(name) for name in table.columns if name not in names]
+        others = [str(name) for name in columns if name not in names]
         instead = f"; unknown: {', '.join(others)}" if others else ""
-        raise ValueError(f"features lack {', '.join(missing)}{instead}")
-    return pandas.DataFrame({name: checks.numbers(name, table[name]) for name in names}, index=table.index)
+        raise ValueError(f"{argument} must have {', '.join(missing)}{instead}")
+    twice = [name for name in names if columns.count(name) > 1]
+    if twice:
+        raise ValueError(f"{argument} must have {', '.join(twice)} once, and not several times")
+    return pandas.DataFrame(
+        {name: checks.numbers(f"{argument}: {name}", table[name]) for name in names}, index=table.index
+    )
+
+
+def table_of(columns: dict[str, Any], argument: str) -> pandas.DataFrame:
+    """Columns of one length as a table; numbers stand for all rows."""
+    one_row = not any(np.ndim(value) for value in columns.values())
+    try:
+        return require("pandas", "prediction").DataFrame(columns, index=[0] if one_row else None)
+    except (TypeError, ValueError) as wrong:
+        raise ValueError(f"{argument} must have columns of one length, each of shape (N,): {wrong}") from wrong
 
 
 def missing_values(table: pandas.DataFrame) -> str:

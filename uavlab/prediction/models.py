@@ -15,7 +15,7 @@ import numpy.typing as npt
 from scipy.special import stdtrit
 
 from uavlab import checks
-from uavlab.prediction.data import Dataset, Setting, make_dataset
+from uavlab.prediction.data import Dataset, Setting, known_setting, make_dataset
 from uavlab.prediction.generator import bayes_accuracy, class_probabilities, offset_class
 from uavlab.requirements import require
 from uavlab.sweep import sweep
@@ -146,7 +146,8 @@ def score(data: Dataset, predicted: npt.ArrayLike) -> dict[str, float]:
     Raises
     ------
     ValueError
-        If `predicted` has not as many values as there are rows for the test, or one that is not finite.
+        If `data` is no Dataset, or `predicted` has not as many values as there are rows for the test, or one that is
+        not finite.
 
     See Also
     --------
@@ -162,6 +163,7 @@ def score(data: Dataset, predicted: npt.ArrayLike) -> dict[str, float]:
     >>> f"{careful['under_prediction']:.0%} too low, but {careful['excess']:.1f} classes too high on average"
     '0% too low, but 4.0 classes too high on average'
     """
+    checks.instance("data", data, Dataset)
     checks.finite("predicted", predicted)
     predicted = np.asarray(predicted, dtype=float)
     true = data.classes[data.test]
@@ -212,7 +214,8 @@ def compare_models(
     Raises
     ------
     ValueError
-        If `seeds` are fewer than 2 or one is repeated, `setting` is unknown, or `jobs` is 0 or no whole number.
+        If `seeds` are fewer than 2, no whole numbers of at least 0, or one is repeated; if `setting` is unknown,
+        `models` are no functions by name, `jobs` is 0 or no whole number, or `progress` or `each` is not True or False.
 
     See Also
     --------
@@ -230,9 +233,14 @@ def compare_models(
     True
     """
     pandas = require("pandas", "prediction")
-    seeds = list(seeds)
+    listed = enumerate(checks.several("seeds", seeds, object, least=0))
+    seeds = [checks.whole(f"seeds[{number}]", seed, 0, most=2**64) for number, seed in listed]
     if len(seeds) < 2 or len(set(seeds)) < len(seeds):  # the same data twice would narrow the interval
         raise ValueError(f"seeds must be at least 2 and all different, got {seeds}")
+    setting, models = known_setting(setting), checks.by_name("models", models)
+    for name, model in models.items():
+        checks.function(f"models[{name!r}]", model, "model(dataset)")
+    checks.flag("each", each)
     cases = [{"seed": seed, "setting": setting, "models": models} for seed in seeds]
     tables = sweep(scores_of_seed, cases, jobs=jobs, progress=progress, unit="dataset")
     table = pandas.DataFrame([row for rows in tables for row in rows])
@@ -250,7 +258,11 @@ def compare_models(
 def scores_of_seed(seed: int, setting: str | Setting, models: Mapping[str, Model]) -> list[dict[str, Any]]:
     data = make_dataset(setting, seed)
     limit = bayes_accuracy(data.log_median[data.test], data.noise, data.class_count)
-    return [{"model": name, "seed": seed, **score(data, model(data)), "bayes": limit} for name, model in models.items()]
+    rows = []
+    for name, model in models.items():
+        predicted = checks.numbers(f"what models[{name!r}] returns", model(data))
+        rows.append({"model": name, "seed": seed, **score(data, predicted), "bayes": limit})
+    return rows
 
 
 def student_t(count: int, coverage: float = 0.95) -> float:

@@ -10,9 +10,9 @@ from __future__ import annotations
 import hashlib
 import json
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -79,8 +79,8 @@ class OffsetPredictor:
     Raises
     ------
     ValueError
-        If `features` is empty, no tuple of names or has one twice, `class_count` is no whole number of at least 2, or
-        `quantile` is not from 0.5 to below 1.
+        If `features` is empty, no tuple of names or has one twice, `class_count` is no whole number of at least 2,
+        `quantile` is not from 0.5 to below 1, or `training` is none that `fit` or `load` made.
 
     See Also
     --------
@@ -110,13 +110,13 @@ class OffsetPredictor:
     training: Training | None = None
 
     def __post_init__(self) -> None:
-        names = self.features
-        if isinstance(names, str) or not names or len(set(names)) < len(names):
-            raise ValueError(f"features must be a tuple of different column names, got {names!r}")
-        object.__setattr__(self, "features", tuple(names))
-        checks.whole("class_count", self.class_count, 2)
+        object.__setattr__(self, "features", checked_names(self.features))
+        object.__setattr__(self, "class_count", checks.whole("class_count", self.class_count, 2))
+        object.__setattr__(self, "quantile", checks.number("quantile", self.quantile))
         if not 0.5 <= self.quantile < 1:
             raise ValueError(f"quantile must be from 0.5 to below 1, got {self.quantile!r}")
+        if self.training is not None:
+            checks.instance("training", self.training, Training)
 
     def __repr__(self) -> str:
         state = "not fitted" if self.training is None else "fitted"
@@ -145,7 +145,7 @@ class OffsetPredictor:
         ------
         ValueError
             If `features` lacks a column or has too few rows, `offsets` are not above 0, all equal or not one for each
-            row, or either has a value that is no number (and `drop_nan` is False).
+            row, either has a value that is no number (and `drop_nan` is False), or `drop_nan` is not True or False.
 
         See Also
         --------
@@ -159,14 +159,17 @@ class OffsetPredictor:
         >>> OffsetPredictor(("wind_speed",)).fit(data.features, data.offsets)
         <OffsetPredictor of wind_speed, 6 classes, quantile 0.95, fitted>
         """
+        checks.flag("drop_nan", drop_nan)
         table = checked_columns(features, self.features)
         reached = checks.numbers("offsets", offsets)
         if reached.shape != (len(table),):
-            raise ValueError(f"offsets must have shape ({len(table)},), one for each row, got {reached.shape}")
+            raise ValueError(
+                f"offsets must have shape ({len(table)},), one for each row of features, got {reached.shape}"
+            )
         joined = table.assign(offsets=reached)
         wrong = missing_values(joined)
         if wrong and not drop_nan:
-            raise ValueError(f"{wrong}; drop_nan=True leaves these rows out")
+            raise ValueError(f"features and offsets: {wrong}; drop_nan=True leaves these rows out")
         whole = np.isfinite(joined.to_numpy()).all(axis=1)
         table, reached = table[whole], reached[whole]
         if not (reached > 0).all():
@@ -335,7 +338,7 @@ class OffsetPredictor:
         >>> predictor.predict_sigma({"wind_speed": [3.0]}).round(2)
         array([0.67])
         """
-        checks.positive("pauta", pauta)
+        pauta = checks.positive_number("pauta", pauta)
         return self.predict_offset(features) / pauta
 
     def log_offset(self, features: Any) -> np.ndarray:
@@ -405,7 +408,7 @@ class OffsetPredictor:
         Raises
         ------
         ValueError
-            If the predictor isn't fitted, or `path` doesn't end in .json.
+            If the predictor isn't fitted, or `path` is no name of a file or doesn't end in .json.
         OSError
             If the file can't be written, as in a folder that doesn't exist.
 
@@ -425,16 +428,16 @@ class OffsetPredictor:
         ...     print([file.name for file in Path(folder).iterdir()])
         ['offsets.json']
         """
-        training = self.fitted
+        training, path = self.fitted, checks.path("path", path)
         if not str(path).endswith(".json"):
             raise ValueError(f"path must end in .json, got {str(path)!r}")
-        known = {"class_count": int(self.class_count), "quantile": float(self.quantile), "spread": training.spread,
+        known = {"class_count": self.class_count, "quantile": self.quantile, "spread": training.spread,
                  "margin": training.margin, "ranges": training.ranges}  # fmt: skip
         booster = training.booster.copy()
         booster.set_attr(**{ATTRIBUTE: json.dumps(known)})
         known["fingerprint"] = fingerprint(json.loads(booster.save_raw("json")))
         booster.set_attr(**{ATTRIBUTE: json.dumps(known)})
-        Path(path).write_bytes(booster.save_raw("json"))
+        path.write_bytes(booster.save_raw("json"))
 
     @classmethod
     def load(cls, path: str | PathLike[str], features: tuple[str, ...] = FEATURES) -> OffsetPredictor:
@@ -457,8 +460,8 @@ class OffsetPredictor:
         FileNotFoundError
             If there is no file at `path`.
         ValueError
-            If the file at `path` isn't one of `save`, was changed since, or was trained on other columns than
-            `features`.
+            If `path` is no name of a file, or `features` are no different names; if the file isn't one of `save`, was
+            changed since, or was trained on other columns than `features`.
 
         See Also
         --------
@@ -475,8 +478,9 @@ class OffsetPredictor:
         ...     OffsetPredictor.load(f"{folder}/offsets.json", ("wind_speed",))
         <OffsetPredictor of wind_speed, 6 classes, quantile 0.95, fitted>
         """
+        path, features = checks.path("path", path), checked_names(features)
         xgboost = require("xgboost", "prediction")
-        content = Path(path).read_bytes()
+        content = path.read_bytes()
         booster = xgboost.Booster()
         try:  # as plain JSON first: XGBoost ends the process on an empty file, and on some that were changed
             model = json.loads(content)
@@ -490,7 +494,7 @@ class OffsetPredictor:
         except (AttributeError, KeyError, TypeError, ValueError, RecursionError, xgboost.core.XGBoostError) as wrong:
             raise ValueError(f"{path} is no file that OffsetPredictor.save wrote, or was changed since") from wrong
         found = tuple(booster.feature_names or ())
-        if found != tuple(features):
+        if found != features:
             lacks = [name for name in features if name not in found]
             unknown = [name for name in found if name not in features]
             raise ValueError(
@@ -498,6 +502,15 @@ class OffsetPredictor:
                 f"unknown: {', '.join(unknown) or 'none, but their order differs'}"
             )
         return loaded
+
+
+def checked_names(features: tuple[str, ...]) -> tuple[str, ...]:
+    """Names of columns as a tuple, all different."""
+    names = features if isinstance(features, Iterable) and not isinstance(features, str) else ()
+    names = tuple(names)
+    if not names or not all(isinstance(name, str) for name in names) or len(set(names)) < len(names):
+        raise ValueError(f"features must be a tuple of different column names, got {features!r:.80}")
+    return names
 
 
 def fingerprint(model: dict[str, Any]) -> str:

@@ -43,7 +43,7 @@ def terminal_speed(uav: UAV = RISK_QUADROTOR, *, air_density: float = AIR_DENSIT
     Raises
     ------
     ValueError
-        If `air_density` is not above 0 and finite, or `uav` is no `UAV`.
+        If `air_density` is not one number that is above 0 and finite, or `uav` is no `UAV`.
 
     See Also
     --------
@@ -57,7 +57,7 @@ def terminal_speed(uav: UAV = RISK_QUADROTOR, *, air_density: float = AIR_DENSIT
     (62.6, 73.1)
     """
     checks.instance("uav", uav, UAV)
-    checks.positive("air_density", air_density)
+    air_density = checks.positive_number("air_density", air_density)
     area = uav.drag_area if uav.fall_drag_area is None else uav.fall_drag_area
     return float(np.sqrt(2 * uav.weight / (area * air_density)))
 
@@ -105,9 +105,9 @@ def fall_speed(
     >>> fall_speed([10, 30, 60], as_printed=True).round(1)  # as of half the height
     array([ 9.8, 16.8, 23.4])
     """
-    checks.not_negative("height", height)
+    checks.not_negative("height", drop := checks.numbers("height", height))
     fastest = terminal_speed(uav, air_density=air_density)
-    exponent = -2 * GRAVITY * np.asarray(height, dtype=float) / fastest**2
+    exponent = -2 * GRAVITY * drop / fastest**2
     return fastest * np.sqrt(-np.expm1(exponent / 2 if checks.flag("as_printed", as_printed) else exponent))
 
 
@@ -197,8 +197,7 @@ def ballistic_fall(
     >>> [round(float(ballistic_fall(30, pitch=np.radians(degrees)).drift), 1) for degrees in (-45, 0, 45)]
     [17.6, 38.2, 41.4]
     """
-    checks.within("height", height, 0.0, HIGHEST, "m")
-    heights = checks.numbers("height", height)
+    checks.within("height", heights := checks.numbers("height", height), 0.0, HIGHEST, "m")
     path = wreck_path(uav, speed, pitch, float(heights.max(initial=0.0)), air_density)
     apex = max(float(path.t_events[1][0]) if len(path.t_events[1]) else 0.0, 0.0)
     times = apex + (path.t[-1] - apex) * np.linspace(0.0, 1.0, 1000) ** 2  # the first millimetres take long
@@ -215,8 +214,8 @@ def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_de
     from scipy.integrate import solve_ivp
 
     checks.instance("uav", uav, UAV)
-    speed = uav.cruise_speed if speed is None else speed
-    checks.not_negative_number("speed", speed)
+    speed = checks.not_negative_number("speed", uav.cruise_speed if speed is None else speed)
+    pitch = checks.number("pitch", pitch)
     checks.within("pitch", pitch, -np.pi / 2, np.pi / 2, "rad (from degrees: numpy.radians)")
     motion, enough = fall_motion(uav, speed, depth, air_density)
 
@@ -262,7 +261,7 @@ def impact_energy(mass: float, forward_speed: npt.ArrayLike, fall_speed: npt.Arr
     Raises
     ------
     ValueError
-        If `mass` is not above 0, `forward_speed` or `fall_speed` is negative, or one of them is not finite.
+        If `mass` is not one number above 0, `forward_speed` or `fall_speed` is negative, or one of them is not finite.
 
     See Also
     --------
@@ -275,10 +274,11 @@ def impact_energy(mass: float, forward_speed: npt.ArrayLike, fall_speed: npt.Arr
     >>> impact_energy(1.38, 16.0, fall_speed([10, 30, 60])).round()
     array([309., 554., 878.])
     """
-    checks.positive("mass", mass)
-    checks.not_negative("forward_speed", forward_speed)
-    checks.not_negative("fall_speed", fall_speed)
-    return 0.5 * mass * (np.square(forward_speed) + np.square(fall_speed))
+    mass = checks.positive_number("mass", mass)
+    forward, down = checks.numbers("forward_speed", forward_speed), checks.numbers("fall_speed", fall_speed)
+    checks.not_negative("forward_speed", forward)
+    checks.not_negative("fall_speed", down)
+    return 0.5 * mass * (forward**2 + down**2)
 
 
 def lethal_area(
@@ -333,11 +333,11 @@ def lethal_area(
     >>> lethal_area([10, 30, 60], 16.0, fall_speed([10, 30, 60])).round(2)
     array([2.35, 1.65, 1.38])
     """
-    for name, value in (
-        ("height", height), ("forward_speed", forward_speed), ("fall_speed", fall_speed),
-        ("uav_diameter", uav_diameter), ("person_radius", person_radius), ("person_height", person_height),
-    ):  # fmt: skip
+    for name, value in (("height", height), ("forward_speed", forward_speed), ("fall_speed", fall_speed)):
         checks.not_negative(name, value)
+    uav_diameter = checks.not_negative_number("uav_diameter", uav_diameter)
+    person_radius = checks.not_negative_number("person_radius", person_radius)
+    person_height = checks.not_negative_number("person_height", person_height)
     height, forward, down = np.broadcast_arrays(*(np.asarray(v, float) for v in (height, forward_speed, fall_speed)))
     if ((down == 0) & (height > 0) & (forward > 0)).any():
         raise ValueError("fall_speed must be above 0 where height and forward_speed are: it would glide for ever")

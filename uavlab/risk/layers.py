@@ -102,7 +102,7 @@ def raster_layer(
     factor = PER[per] if per is None else PER[checks.one_of("per", per, [name for name in PER if name])]
     raster, edges = checked_raster("values", values, bounds)
     if fill is not None:
-        checks.number("fill", fill)
+        fill = checks.number("fill", fill)
         (checks.finite if per is None else checks.not_negative)("fill", fill)
     system = None if crs is None else system_of(crs)
     raster, edges = part_around(city, raster, edges, system)
@@ -236,7 +236,7 @@ def road_layer(
         per_line(name, value, len(lines)) for name, value in (("width", width), ("cars_per_km", cars_per_km))
     )
     checks.positive("width", widths)
-    covered = vehicle_share(densities, lane_width)
+    covered = vehicle_share(densities, checks.number("lane_width", lane_width))
     system = None if crs is None else system_of(crs)
     busiest = np.argsort(-covered, kind="stable")
     roadways = [roadway(checked_line(f"lines[{n}]", lines[n], city, system), widths[n]) for n in busiest]
@@ -321,22 +321,31 @@ def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = H
     """
     checks.instance("city", city, City)
     checks.not_negative_number("high", high)
-    open_ground = np.asarray(ground)
-    if open_ground.dtype.kind == "O":  # names from pandas
-        open_ground = np.asarray(open_ground.tolist())
-    if open_ground.dtype.kind == "U":
-        unknown = sorted(set(open_ground.ravel().tolist()) - set(SHELTER))
-        if unknown:
-            raise ValueError(f"ground must be one of {', '.join(map(repr, SHELTER))}, got {unknown[0]!r}")
-        open_ground = np.vectorize(SHELTER.__getitem__, otypes=[float])(open_ground)
-    open_ground = checks.numbers("ground", open_ground)
-    checks.within("ground", open_ground, 0.0, 1.0, "(0 none, 1 industry)")
+    open_ground = shelter_of(ground)
     if open_ground.shape not in ((), city.shape[:2]):
         raise ValueError(f"ground must have the city's ground plan {city.shape[:2]}, got {open_ground.shape}")
     ground, top = city.range_of_ground[1], city.bounds[1, 2]
     roof = np.round(np.where(city.occupied[..., -1], top, city.surface_below[..., -1]) - ground, 5)
     built = np.where(roof >= high, SHELTER["high buildings"], SHELTER["trees or low buildings"])
     return np.where(roof > 0, built, open_ground)
+
+
+def shelter_of(ground: npt.ArrayLike) -> np.ndarray:
+    """Shelter p_s of open ground, given by itself or by the names of Table 1."""
+    try:
+        names = np.asarray(ground)
+        if names.dtype.kind == "O":  # names from pandas
+            names = np.asarray(names.tolist())
+    except ValueError as wrong:
+        raise ValueError(f"ground must be a name, a number, or an array of either: {wrong}") from wrong
+    if names.dtype.kind == "U":
+        unknown = sorted(set(names.ravel().tolist()) - set(SHELTER))
+        if unknown:
+            raise ValueError(f"ground must be one of {', '.join(map(repr, SHELTER))}, got {unknown[0]!r}")
+        return np.vectorize(SHELTER.__getitem__, otypes=[float])(names)
+    shelter = checks.numbers("ground", ground)
+    checks.within("ground", shelter, 0.0, 1.0, "(0 none, 1 industry)")
+    return shelter
 
 
 def column_centers(city: City) -> np.ndarray:

@@ -160,7 +160,7 @@ class RiskMap:
         Raises
         ------
         ValueError
-            If `route` leaves the map, was not found, or is neither route nor curve.
+            If `route` leaves the map, was not found, or is neither route nor curve, or `drift` isn't True or False.
 
         See Also
         --------
@@ -181,7 +181,7 @@ class RiskMap:
         ['3.3e-07', '1.5e-05']
         """
         route = found(route)
-        if not drift:
+        if not checks.flag("drift", drift):
             return route.integral(self.city, self.rate) / self.city.cell
         route.voxels(self.city)  # refuses a route that leaves the map
         total = 0.0

@@ -137,9 +137,9 @@ def osm_layers(
     (<Layers from roads.geojson: shelter and vehicle_share of 8 × 6 columns>, 0.0092)
     """
     checks.instance("city", city, City)
-    checks.positive_number("lane_width", lane_width)
+    lane_width = checks.positive_number("lane_width", lane_width)
     by_class = cars_by_class(cars_per_km)
-    path, notes = Path(path), Notes()
+    path, notes = checks.path("path", path), Notes()
     documents = read_json(path)
     features = [feature for document in documents for feature in features_of(document, path)]
     lines, widths, cars, areas = [], [], [], []

@@ -97,8 +97,8 @@ def impact_fatality(
     """
     checks.not_negative("energy", energy)
     checks.within("shelter", shelter, 0.0, 1.0, "(0 none, 1 industry)")
-    checks.positive("even_odds_energy", even_odds_energy)
-    checks.positive("least_fatal_energy", least_fatal_energy)
+    even_odds_energy = checks.positive_number("even_odds_energy", even_odds_energy)
+    least_fatal_energy = checks.positive_number("least_fatal_energy", least_fatal_energy)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         over = np.log(np.asarray(energy, dtype=float) / least_fatal_energy)
         power = np.where(over == 0, 0.0, over / (4 * np.asarray(shelter, dtype=float)))
@@ -147,7 +147,7 @@ def person_rate(
     ValueError
         If `height` is negative, or above 50 000 m with `ballistic`; `population_density` is not from 0 to 10 per m²;
         `shelter` is not from 0 to 1; `speed` is negative; `air_density` is not above 0; one of them is not finite;
-        `uav` is no `UAV`; `as_printed` isn't True or False; or `ballistic` and `as_printed` are asked for at once.
+        `uav` is no `UAV`; `ballistic` or `as_printed` isn't True or False; or both are asked for at once.
 
     See Also
     --------
@@ -164,13 +164,11 @@ def person_rate(
     >>> round(float(1e6 * person_rate(30, shelter=0.5)), 2)
     0.07
     """
-    checks.flag("as_printed", as_printed)
-    if ballistic and as_printed:
+    if checks.flag("ballistic", ballistic) and checks.flag("as_printed", as_printed):
         raise ValueError("as_printed and ballistic exclude each other: the papers print the closed form only")
     check_density(population_density)
     checks.instance("uav", uav, UAV)
-    speed = uav.cruise_speed if speed is None else speed
-    checks.not_negative_number("speed", speed)
+    speed = checks.not_negative_number("speed", uav.cruise_speed if speed is None else speed)
     if ballistic:
         fall = ballistic_fall(height, uav, speed=speed, air_density=air_density)
         forward, down = fall.forward_speed, fall.fall_speed

@@ -61,7 +61,7 @@ def building_threat(city: City, *, constant: float = THREAT_CONSTANT) -> np.ndar
     (array([11.4, 16. , 26.7, 40. , 40. , 26.7, 16. , 11.4]), 0.0)
     """
     checks.instance("city", city, City)
-    checks.not_negative("constant", constant)
+    constant = checks.not_negative_number("constant", constant)
     if not city.buildings and city.occupied.any():
         raise ValueError("city must know its buildings, not only voxels: use read_geojson or City.from_buildings")
     x, y, z = (city.coordinates(axis) for axis in range(3))
@@ -117,7 +117,7 @@ def printed_threat(route: Route, city: City, *, constant: float = THREAT_CONSTAN
     """
     checks.instance("route", route, Route)
     checks.instance("city", city, City)
-    checks.not_negative("constant", constant)
+    constant = checks.not_negative_number("constant", constant)
     if not city.buildings or len(route.points) == 0:
         raise ValueError("the printed threat needs a route with points and a city that knows its buildings")
     x, y, _ = route.points.T

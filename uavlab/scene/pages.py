@@ -19,13 +19,16 @@ from uavlab.plot.flights import label_of_flight, named_flights
 from uavlab.plot.ground import ZONE_COLOR, ground_words, zone_label, zones_at
 from uavlab.plot.maps import risk_norm
 from uavlab.plot.stills import still
-from uavlab.plot.style import CRASH_COLOR, Drawn, drawn_routes, route_colors, sequential_color
+from uavlab.plot.style import CRASH_COLOR, Drawn, drawn_routes, level_of, route_colors, sequential_color
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 from uavlab.scene.animation import FLIGHT_SECONDS, FRAMES_PER_SECOND, animate_expansion, animate_flight, animate_route
 from uavlab.scene.recorder import CommandRecorder
 from uavlab.scene.shapes import draw_route
 from uavlab.scene.stage import draw_city, draw_risk, draw_zones, grid_spacing, set_stage
+
+MOST_PIXELS = 10_000
+"""Of a frame's height; no screen has as many."""
 
 
 class Scene:
@@ -69,7 +72,7 @@ class Scene:
             f'<div class="uavlab-scene"><iframe srcdoc="{html.escape(self.page)}" title="3D scene" '
             f'style="width:100%;height:{self.height}px;border:0"></iframe></div>'
         )
-        return {"text/html": frame, "image/png": base64.b64encode(self.still).decode(), "text/plain": "<3D scene>"}
+        return {"text/html": frame, "image/png": base64.b64encode(self.still).decode(), "text/plain": repr(self)}
 
 
 def show(
@@ -89,7 +92,7 @@ def show(
     city, routes, safe_distance, expansion, risk, slice_height, flights
         As for `page`.
     height : int
-        Of the frame [pixels], above 0; 300 to 700 is usual.
+        Of the frame [pixels], 1 to 10 000; 300 to 700 is usual.
 
     Returns
     -------
@@ -99,7 +102,7 @@ def show(
     Raises
     ------
     ValueError
-        As for `page`.
+        If `height` is no whole number from 1 to 10 000, or another argument is wrong as for `page`.
 
     See Also
     --------
@@ -115,8 +118,7 @@ def show(
     >>> show(city, astar(city, (90, 18, 30), (50, 44, 30), min_clearance=3.0), safe_distance=3.0)
     <Scene: page of ... kB, 480 pixels high>
     """
-    picture = io.BytesIO()
-    still(city, *routes, risk=risk, flights=flights).savefig(picture, format="png", dpi=72)
+    height = checks.whole("height", height, 1, MOST_PIXELS)
     content = page(
         city,
         *routes,
@@ -126,6 +128,8 @@ def show(
         slice_height=slice_height,
         flights=flights,
     )
+    picture = io.BytesIO()
+    still(city, *routes, risk=risk, flights=flights).savefig(picture, format="png", dpi=72)
     return Scene(content, height, picture.getvalue())
 
 
@@ -173,10 +177,10 @@ def page(
     Raises
     ------
     ValueError
-        If `city` is no `City`, one of `routes` is neither a route nor a curve, `risk` is no `RiskMap`, or `flights`
-        holds anything else than flights; `expansion` is asked for without a route that recorded its order or together
-        with `flights`; `safe_distance` is not above 0; `slice_height` lies outside of the map, or there is no `risk`
-        to slice.
+        If `city` is no `City`, one of `routes` is neither a route nor a curve, `risk` is no `RiskMap` of this city, or
+        `flights` holds anything else than flights; `expansion` is neither True nor False, or is asked for without a
+        route that recorded its order or together with `flights`; `safe_distance` is not above 0; `slice_height` lies
+        outside of the map, or there is no `risk` to slice; or `title` is no text.
 
     See Also
     --------
@@ -196,10 +200,14 @@ def page(
     planned = drawn_routes(city, routes, risk)
     if slice_height is not None and risk is None:
         raise ValueError("slice_height needs risk=..., the map to cut")
+    if slice_height is not None:
+        slice_height = checks.number("slice_height", slice_height)
+        level_of(city, slice_height, "slice_height")
     if safe_distance is not None:
-        checks.positive_number("safe_distance", safe_distance)
-        safe_distance = float(safe_distance)  # the viewer's commands take no NumPy scalars
-    if expansion and not (planned and "order" in planned[0].info):
+        safe_distance = checks.positive_number("safe_distance", safe_distance)
+    if title is not None:
+        checks.text("title", title)
+    if checks.flag("expansion", expansion) and not (planned and "order" in planned[0].info):
         raise ValueError("expansion needs a first route planned with record=True")
     named = named_flights(flights)
     if expansion and named:
@@ -261,5 +269,5 @@ def legend(city: City, routes: tuple[Route, ...], flights: Mapping[str, Flight],
         stops = ",".join(sequential_color(share) for share in np.linspace(0, 1, 9))
         style = f"display:inline-block;width:9em;height:.8em;background:linear-gradient(90deg,{stops})"
         bar = f'<span style="{style}"></span>'
-        lines.append(f"{norm.vmin:.1e} {bar} {norm.vmax:.1e} deaths per hour of flight (scale of factors)")
+        lines.append(f"{norm.vmin:.1e} {bar} {norm.vmax:.1e} deaths per hour of flight (logarithmic scale)")
     return "<br>".join(lines)

@@ -114,7 +114,7 @@ def draw_zones(scene: meshcat.Visualizer, city: City) -> None:
 
 
 def draw_risk(scene: meshcat.Visualizer, risk_map: RiskMap, slice_height: float | None) -> None:
-    """The ground painted with the risk above it, and a slice at a height, both on one scale of factors."""
+    """The ground painted with the risk above it, and a slice at a height, both on one logarithmic scale."""
     city = risk_map.city
     norm = risk_norm(risk_map)
 

@@ -51,7 +51,7 @@ def wind_limit(
     Raises
     ------
     ValueError
-        If `rain` is negative, `air_density` is not above 0, or `safety_factor` is below 1.
+        If `uav` is no UAV, `rain` is negative, `air_density` is not above 0, or `safety_factor` is below 1.
 
     See Also
     --------
@@ -66,6 +66,7 @@ def wind_limit(
     >>> [round(float(wind_limit(LIGHT_QUADROTOR.loaded(load))), 1) for load in (0.0, 0.6, 1.0, 1.2)]
     [25.5, 22.7, 19.2, 0.0]
     """
+    checks.instance("uav", uav, UAV)
     checks.positive("air_density", air_density)
     safe = lift_margin(uav, rain, safety_factor=safety_factor) > 0
     held = np.sqrt(2.0 * uav.horizontal_reserve(rain) / (np.asarray(air_density) * uav.drag_area))
@@ -109,7 +110,7 @@ def course_wind_limit(air_speed: float, ground_speed: npt.ArrayLike, wind_angle:
     >>> course_wind_limit(10.0, 6.0, np.radians([0.0, 90.0, 180.0])).round(1)  # from behind, across, ahead
     array([16.,  8.,  4.])
     """
-    checks.positive("air_speed", air_speed)
+    air_speed = checks.positive_number("air_speed", air_speed)
     checks.within("ground_speed", ground_speed, 0.0, air_speed, "m/s, the air_speed")
     checks.finite("wind_angle", wind_angle)
     speed, angle = np.asarray(ground_speed, dtype=float), np.asarray(wind_angle, dtype=float)
@@ -152,8 +153,8 @@ def mean_wind_limit(
     Raises
     ------
     ValueError
-        If `ground_speed` or `rain` is negative, `air_density` is not above 0, or `gust_factor` or `safety_factor` is
-        below 1.
+        If `uav` is no UAV, `ground_speed` or `rain` is negative, `air_density` is not above 0, or `gust_factor` or
+        `safety_factor` is below 1.
 
     See Also
     --------
@@ -167,7 +168,8 @@ def mean_wind_limit(
     >>> [round(float(mean_wind_limit(LIGHT_QUADROTOR, ground_speed=speed)), 1) for speed in (0.0, 5.0, 15.0)]
     [14.5, 13.0, 3.0]
     """
-    checks.not_negative("ground_speed", ground_speed)
+    ground_speed = checks.not_negative_number("ground_speed", ground_speed)
+    gust_factor = checks.number("gust_factor", gust_factor)
     checks.at_least_one("gust_factor", gust_factor)
     gust = wind_limit(uav, rain, air_density=air_density, safety_factor=safety_factor)
     against = np.maximum(np.minimum(gust, uav.top_speed) - ground_speed, 0.0)
@@ -198,7 +200,7 @@ def air_speed_held(uav: UAV, rain: float = 0.0, *, air_density: float = STANDARD
     Raises
     ------
     ValueError
-        If `rain` is negative.
+        If `uav` is no UAV, `rain` is negative, `air_density` is not above 0, or `share` is not within 0 to 1.
 
     See Also
     --------
@@ -212,6 +214,15 @@ def air_speed_held(uav: UAV, rain: float = 0.0, *, air_density: float = STANDARD
     >>> [round(air_speed_held(LIGHT_QUADROTOR.loaded(load), share=0.4), 1) for load in (0.0, 0.6, 1.0)]
     [16.1, 14.4, 12.1]
     """
+    checks.instance("uav", uav, UAV)
+    rain = checks.not_negative_number("rain", rain)
+    air_density, share = checks.positive_number("air_density", air_density), checks.number("share", share)
+    checks.within("share", share, 0.0, 1.0, "of the reserve")
+    return steady_air_speed(uav, rain, air_density, share)
+
+
+def steady_air_speed(uav: UAV, rain: float, air_density: float = STANDARD_AIR, share: float = 1.0) -> float:
+    """`air_speed_held` of arguments that are right."""
     held = share * float(uav.horizontal_reserve(rain))
     return min(uav.top_speed, float(np.sqrt(2.0 * held / (air_density * uav.drag_area))))
 
@@ -255,8 +266,8 @@ def ground_speed_held(
     Raises
     ------
     ValueError
-        If `wind` is not two or three finite numbers, `direction` is not made of numbers, or `rain_mm_per_h` is
-        negative.
+        If `uav` is no UAV, `direction` is not of shape (..., 3) or not finite, `wind` is not two or three finite
+        numbers, `rain_mm_per_h` is negative, `air_density` is not above 0, or `share` is not within 0 to 1.
 
     See Also
     --------
@@ -271,8 +282,9 @@ def ground_speed_held(
     >>> ground_speed_held(LIGHT_QUADROTOR, ways, wind=(6.0, 0.0)).round(1)
     array([24., 12.,  5.])
     """
-    mean, along_it = np.array(checks.three("wind", wind)), checks.numbers("direction", direction)
-    rain = float(rain_force(rain_mm_per_h, uav.rain_area))
+    checks.instance("uav", uav, UAV)
+    mean, along_it = np.array(checks.three("wind", wind)), checks.array("direction", direction, ..., 3)
+    rain = float(rain_force(checks.number("rain_mm_per_h", rain_mm_per_h), uav.rain_area))
     fastest = air_speed_held(uav, rain, air_density=air_density, share=share)
     along = along_it @ mean
     across = np.sqrt(np.maximum((mean**2).sum() - along**2, 0.0))
@@ -310,7 +322,7 @@ def grounded_by(
     Raises
     ------
     ValueError
-        If `ground_speed` is negative or `safety_factor` is below 1.
+        If `uav` is no UAV, `weather` is no Weather, `ground_speed` is negative, or `safety_factor` is below 1.
 
     See Also
     --------
@@ -326,7 +338,9 @@ def grounded_by(
     >>> grounded_by(LIGHT_QUADROTOR.loaded(1.0), Weather(forecast_wind=12.0))
     ('gusts: 21.0 m/s, and the thrust left over holds 19.2 m/s',)
     """
-    checks.not_negative("ground_speed", ground_speed)
+    checks.instance("uav", uav, UAV)
+    checks.instance("weather", weather, Weather)
+    ground_speed = checks.not_negative_number("ground_speed", ground_speed)
     mean, gust = weather.reference_wind
     rain = float(rain_force(weather.rain_mm_per_h, uav.rain_area))
     return limits_broken(uav, mean, gust, rain, weather.air_density, ground_speed, safety_factor)
@@ -346,7 +360,7 @@ def limits_broken(
     if margin <= 0:
         return (f"lift: {-margin:.2f} N short of {safety_factor:g} times weight and rain",)
     held = float(wind_limit(uav, rain, air_density=air_density, safety_factor=safety_factor))
-    speed = air_speed_held(uav, rain, air_density=air_density)
+    speed = steady_air_speed(uav, rain, air_density)
     reasons = []
     if gust > held:
         reasons.append(f"gusts: {gust:.1f} m/s, and the thrust left over holds {held:.1f} m/s")

@@ -90,8 +90,7 @@ class Weather:
 
     def __post_init__(self) -> None:
         for item in fields(self):
-            checks.number(item.name, getattr(self, item.name))
-        checks.as_floats(self, *(item.name for item in fields(self)))
+            object.__setattr__(self, item.name, checks.number(item.name, getattr(self, item.name)))
         checks.air(self.temperature_c, self.humidity_percent, self.pressure_hpa)
         for name in ("forecast_wind", "forecast_max_wind", "measured_wind", "rain_mm_per_h", "radiation"):
             checks.not_negative(name, getattr(self, name))
@@ -245,8 +244,8 @@ def rain_force(
     array([0.0025, 0.0125, 0.025 ])
     """
     checks.not_negative("rain_mm_per_h", rain_mm_per_h)
-    checks.positive("area", area)
-    checks.positive("drop_speed", drop_speed)
+    area, drop_speed = checks.positive_number("area", area), checks.positive_number("drop_speed", drop_speed)
+    restitution = checks.number("restitution", restitution)
     checks.within("restitution", restitution, 0.0, 1.0, "(0: drops stick, 1: they bounce back)")
     pressure = WATER_DENSITY * np.asarray(rain_mm_per_h, dtype=float) / 3.6e6 * drop_speed
     return pressure * restitution if checks.flag("as_printed", as_printed) else pressure * area * (1.0 + restitution)
@@ -278,7 +277,7 @@ def lift_margin(
     Raises
     ------
     ValueError
-        If `rain` is negative, `safety_factor` is below 1, or `as_printed` is not True or False.
+        If `uav` is no UAV, `rain` is negative, `safety_factor` is below 1, or `as_printed` is not True or False.
 
     See Also
     --------
@@ -292,7 +291,9 @@ def lift_margin(
     >>> [round(float(lift_margin(LIGHT_QUADROTOR.loaded(load), rain=0.1)), 2) for load in (0.0, 1.0, 1.3)]
     [11.7, 0.91, -2.32]
     """
+    checks.instance("uav", uav, UAV)
     checks.not_negative("rain", rain)
+    safety_factor = checks.number("safety_factor", safety_factor)
     checks.at_least_one("safety_factor", safety_factor)
     counted = np.asarray(rain, dtype=float) * (1.0 if checks.flag("as_printed", as_printed) else safety_factor)
     return uav.thrust - safety_factor * uav.weight - counted
@@ -341,12 +342,10 @@ def reference_wind(
     >>> reference_wind(forecast_mean=4.0, measured_mean=6.0, forecast_max=9.0)
     ReferenceWind(mean=6.0, gust=10.5)
     """
-    for name, value in (
-        ("forecast_mean", forecast_mean),
-        ("measured_mean", measured_mean),
-        ("forecast_max", forecast_max),
-    ):
-        checks.not_negative_number(name, value)
+    forecast_mean = checks.not_negative_number("forecast_mean", forecast_mean)
+    measured_mean = checks.not_negative_number("measured_mean", measured_mean)
+    forecast_max = checks.not_negative_number("forecast_max", forecast_max)
+    gust_factor = checks.number("gust_factor", gust_factor)
     checks.at_least_one("gust_factor", gust_factor)
     mean = max(forecast_mean, measured_mean)
     return ReferenceWind(mean, mean if checks.flag("as_printed", as_printed) else max(forecast_max, gust_factor * mean))
@@ -390,7 +389,7 @@ def reachable_ground_speed(air_speed: float, wind: npt.ArrayLike, course: npt.Ar
     >>> reachable_ground_speed(10.0, winds, course=(1.0, 0.0)).round(2)
     array([16.,  8.,  4.])
     """
-    checks.positive("air_speed", air_speed)
+    air_speed = checks.positive_number("air_speed", air_speed)
     wind, course = checks.vectors(wind=wind, course=course)
     size = np.linalg.norm(course, axis=-1, keepdims=True)
     if (size == 0).any():
@@ -453,7 +452,7 @@ def wind_drag(
     >>> f"{hover[0]:.2f} N, and {twice[0] / hover[0]:.0f} times that in twice the wind"
     '3.67 N, and 4 times that in twice the wind'
     """
-    checks.positive("drag_area", drag_area)
+    drag_area = checks.positive_number("drag_area", drag_area)
     checks.positive("air_density", air_density)
     wind, ground_velocity = checks.vectors(wind=wind, ground_velocity=ground_velocity)
     half = 0.5 * np.asarray(air_density, dtype=float)[..., None] * drag_area

@@ -240,6 +240,11 @@ class WeatherRecord:
         str
             With its time, if the record has times.
 
+        Raises
+        ------
+        ValueError
+            If `row` is no row of the record.
+
         See Also
         --------
         WeatherRecord.row : the number of a row.
@@ -253,6 +258,8 @@ class WeatherRecord:
         >>> record.place(1)
         'row 1 (2026-03-01T13:00:00)'
         """
+        if checks.whole("row", row, 0) >= len(self):
+            raise ValueError(f"row must be a row from 0 to {len(self) - 1}, got {row}")
         return f"row {row}" if self.time is None else f"row {row} ({self.time[row]})"
 
     @property
@@ -295,8 +302,9 @@ def read_weather(path: str | Path) -> WeatherRecord:
     Raises
     ------
     ValueError
-        If the file at `path` has no row or no known column, a column has no unit or an unknown one, or appears twice;
-        if a value is no number or not to be believed, or times aren't in order. The message says which row and column.
+        If `path` is no name of a file; if the file has no row or no known column, a column has no unit or an unknown
+        one, or appears twice; if a value is no number or not to be believed, or times aren't in order. The message says
+        which row and column.
     OSError
         If the file at `path` can't be read.
 
@@ -320,7 +328,7 @@ def read_weather(path: str | Path) -> WeatherRecord:
     >>> record.columns["wind_speed"].round(1)
     array([ 5., 10.])
     """
-    path = Path(path)
+    path = checks.path("path", path)
     header, rows = table_of(path)
     known, times, ignored = columns_of(header, path.name)
     if not known:
@@ -384,8 +392,8 @@ def mean_wind(samples: npt.ArrayLike, interval: float, averaging_time: float = 6
     checks.finite("samples", winds)
     if winds.ndim == 1:
         checks.not_negative("samples", winds)
-    checks.positive_number("interval", interval)
-    checks.positive_number("averaging_time", averaging_time)
+    interval = checks.positive_number("interval", interval)
+    averaging_time = checks.positive_number("averaging_time", averaging_time)
     count = max(round(averaging_time / interval), 1)
     if len(winds) < count:
         raise ValueError(

@@ -91,8 +91,8 @@ def dryden_parameters(altitude: float, wind_at_6m: float) -> DrydenParameters:
     >>> f"σ along {low.deviations[0]:.2f} m/s at 10 m, {high.deviations[0]:.2f} m/s at 100 m"
     'σ along 1.89 m/s at 10 m, 1.38 m/s at 100 m'
     """
+    altitude, wind_at_6m = checks.number("altitude", altitude), checks.not_negative_number("wind_at_6m", wind_at_6m)
     checks.within("altitude", altitude, LOWEST, HIGHEST, "m, the low-altitude range of MIL-F-8785C")
-    checks.not_negative("wind_at_6m", wind_at_6m)
     feet = altitude / FOOT
     shape = 0.177 + 0.000823 * feet
     horizontal = altitude / shape**1.2
@@ -193,8 +193,9 @@ def dryden_gusts(
     Raises
     ------
     ValueError
-        If `duration`, `time_step` or `air_speed` is not above 0, `time_step` is longer than `duration`, `altitude` is
-        not within 3.048 to 304.8, `wind_at_6m` is negative, or `rng` is neither a generator nor a seed.
+        If `duration`, `time_step` or `air_speed` is not above 0, `time_step` is longer than `duration` or leaves more
+        than 1,000,000,000 samples, `altitude` is not within 3.048 to 304.8, `wind_at_6m` is negative, or `rng` is
+        neither a generator nor a seed.
 
     See Also
     --------
@@ -216,10 +217,12 @@ def dryden_gusts(
     >>> dryden_parameters(30.0, 10.0).deviations.round(1)
     array([1.7, 1.7, 1. ])
     """
-    checks.positive("duration", duration)
-    checks.positive("time_step", time_step)
+    duration = checks.positive_number("duration", duration)
+    time_step = checks.positive_number("time_step", time_step)
     if time_step > duration:
         raise ValueError(f"time_step {time_step:g} s is longer than the duration of {duration:g} s")
+    if duration / time_step > checks.MOST:
+        raise ValueError(f"time_step must leave at most {checks.MOST:,} samples in {duration:g} s, got {time_step:g}")
     scales, deviations = time_scales(air_speed, altitude, wind_at_6m)
     noise = checks.generator("rng", rng).standard_normal((3, round(duration / time_step), 2))
     gusts = [
@@ -231,12 +234,13 @@ def dryden_gusts(
 
 def time_scales(air_speed: float, altitude: float, wind_at_6m: float) -> tuple[np.ndarray, np.ndarray]:
     """Time scales L/V [s] and standard deviations [m/s] along, across and vertical."""
+    air_speed = checks.number("air_speed", air_speed)
     if air_speed == 0:
         raise ValueError(
             "air_speed is 0: frozen turbulence doesn't move past a UAV that rests in the air; "
             "in hover give the mean wind, which carries it past"
         )
-    checks.positive("air_speed", air_speed)
+    checks.positive_number("air_speed", air_speed)
     lengths, deviations = dryden_parameters(altitude, wind_at_6m)
     return lengths / air_speed, deviations
 

@@ -74,11 +74,11 @@ class Wind:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "mean", checks.three("mean", self.mean))
-        checks.one_of("gusts", self.gusts, GUSTS)
+        object.__setattr__(self, "gusts", str(checks.one_of("gusts", self.gusts, GUSTS)))
         for name in ("deviation", "rain_mm_per_h"):
-            checks.not_negative_number(name, getattr(self, name))
+            object.__setattr__(self, name, checks.not_negative_number(name, getattr(self, name)))
         for name in ("correlation", "air_density"):
-            checks.positive_number(name, getattr(self, name))
+            object.__setattr__(self, name, checks.positive_number(name, getattr(self, name)))
         if self.gusts == "dryden" and not any(self.mean[:2]):
             raise ValueError("mean is calm, and Dryden gusts take their strength from it: give a wind, or other gusts")
 
@@ -112,7 +112,8 @@ class Wind:
         Raises
         ------
         ValueError
-            If `gusts` is unknown, `correlation` is not above 0, or `gusts` is "dryden" and `weather` is calm.
+            If `weather` is no Weather, `gusts` is unknown, `correlation` is not above 0, or `gusts` is "dryden" and
+            `weather` is calm.
 
         See Also
         --------
@@ -126,6 +127,7 @@ class Wind:
         >>> f"{wind.mean[0]:.1f} m/s to the east, σ = {wind.deviation:.1f} m/s"
         '4.0 m/s to the east, σ = 1.5 m/s'
         """
+        checks.instance("weather", weather, Weather)
         mean, gust = weather.reference_wind
         return cls(
             mean=tuple(mean * weather.wind_direction),
@@ -175,8 +177,8 @@ def gust_spectrum(wind: Wind, omega: npt.ArrayLike, air_speed: float, altitude: 
     Raises
     ------
     ValueError
-        If `omega` is not made of numbers. Of Dryden gusts also if `omega` is negative or not finite, `air_speed` not
-        above 0, or `altitude` not within its range.
+        If `wind` is no Wind, `omega` is negative or not finite, or `air_speed` or `altitude` is not above 0; of Dryden
+        gusts also if `altitude` is not within its range.
 
     See Also
     --------
@@ -192,11 +194,15 @@ def gust_spectrum(wind: Wind, omega: npt.ArrayLike, air_speed: float, altitude: 
     >>> np.trapezoid(density, omega, axis=0).round(1)  # the variances: 2² level, 1² vertical
     array([4., 4., 1.])
     """
-    omega = checks.numbers("omega", omega)
-    if wind.gusts == "none":
-        return np.zeros((*omega.shape, 3))
+    checks.instance("wind", wind, Wind)
     if wind.gusts == "dryden":
         return dryden_spectrum(omega, air_speed, altitude, wind.speed)
+    checks.not_negative("omega", omega)
+    checks.positive_number("air_speed", air_speed)
+    checks.positive_number("altitude", altitude)
+    omega = np.asarray(omega, dtype=float)
+    if wind.gusts == "none":
+        return np.zeros((*omega.shape, 3))
     turn = omega * wind.correlation
     shape = 2 / (1 + turn**2) if wind.gusts == "ou" else np.sinc(turn / (2 * np.pi)) ** 2
     deviations = wind.deviation * np.array([1.0, 1.0, 0.5])
