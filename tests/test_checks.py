@@ -89,3 +89,8 @@ def test_what_is_right_comes_back(tmp_path):
     assert [checks.path("path", entry) for entry in os.scandir(tmp_path)] == [tmp_path / "a.csv"]
     assert checks.several("routes", (Route([(0, 0, 0)]),), Route)[0].planner == "given"
     assert list(checks.by_name("functions", {"f": abs})) == ["f"]
+
+
+def test_texts_come_back_plain():
+    assert type(checks.text("name", np.str_("city"))) is str
+    assert type(checks.one_of("zone", np.str_("ball"), ("ball", "ring"))) is str

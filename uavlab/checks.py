@@ -125,7 +125,7 @@ def one_of(name: str, value: str, known: Iterable[str]) -> str:
     known = list(known)
     if not isinstance(value, str) or value not in known:
         raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
-    return value
+    return str(value)
 
 
 def flag(name: str, value: object) -> bool:
@@ -155,7 +155,7 @@ def text(name: str, value: str) -> str:
     """Refuse what isn't text."""
     if not isinstance(value, str):
         raise ValueError(f"{name} must be text, got {value!r:.60}")
-    return value
+    return str(value)
 
 
 def path(name: str, value: str | PathLike[str]) -> Path:
@@ -240,6 +240,7 @@ MAKERS = {
     "SafetyDomain": "safety_domain(samples) of uavlab.offsets gives one",
     "Flight": "fly(route, city, uav, disturbance, rng=...) makes one",
     "Flights": "monte_carlo(route, city, uav, disturbance, rng=...) makes some",
+    "Conditions": "flight_conditions(load, disturbance) makes some",
     "City": "read_city(path) reads one, a RiskMap has one as its .city",
     "RiskMap": "RiskMap(city, population_density, shelter) makes one",
     "Terrain": "Terrain.from_raster(heights, bounds) makes one, read_terrain(path) reads one",

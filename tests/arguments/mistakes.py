@@ -554,7 +554,7 @@ def function_mistakes(spot: Spot) -> Iterator[tuple[str, Any]]:
         yield "returns text", lambda *given, **named: "much"
         yield "returns a wrong shape", lambda *given, **named: np.zeros((2, 3, 5))
         yield "returns a City", lambda *given, **named: things.TOWN
-        yield "returns complex", lambda *given, **named: np.full(len(given[0]) if given else 1, 1j)
+        yield "returns complex", lambda *given, **named: np.full(np.shape(given[0])[:1], 1j)
 
 
 MAKERS = {

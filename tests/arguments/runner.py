@@ -21,7 +21,10 @@ from matplotlib.figure import Figure
 from mistakes import LENIENT, Spot, mistakes_for, variants_for
 
 TIMEOUT = 5.0
-"""What takes longer [s] counts as endless."""
+"""A mistake that takes longer [s] counts as endless."""
+
+PATIENCE = 30.0
+"""And a rightful call, which may have to be compiled on a busy machine [s]."""
 
 TIMES = {"elapsed"}
 """Keys that differ from call to call."""
@@ -161,10 +164,10 @@ def variants(key: str) -> list[Outcome]:
 
 def compare(key: str, where: str, other: Any, truth: Any) -> tuple[str, str]:
     try:
-        with within(TIMEOUT):
+        with within(PATIENCE):
             result = digest(invoke(key, replaced(key, where, other)))
     except Slow:
-        return "slow", f"over {TIMEOUT:g} s"
+        return "slow", f"over {PATIENCE:g} s"
     except Exception as error:
         return "refused", said(error)
     return ("same", "") if same(truth, result) else ("differs", f"{result!r:.150}")

@@ -236,6 +236,12 @@ def test_a_wrong_setting_of_the_antennae_is_named(optimizer, options, message):
         optimizer(sphere, BOUNDS, 60, 0, **options)
 
 
+@pytest.mark.parametrize("greedy", ["False", 2, None])
+def test_whether_it_is_greedy_is_true_or_false(greedy):
+    with pytest.raises(ValueError, match=re.escape(f"greedy must be True or False, got {greedy!r}")):
+        bas(sphere, BOUNDS, 60, 0, greedy=greedy)
+
+
 def test_a_beetle_that_walks_either_way_has_no_success_to_follow():
     with pytest.raises(ValueError, match="decay must be a number unless greedy"):
         bas(sphere, BOUNDS, 60, 0, decay=None)

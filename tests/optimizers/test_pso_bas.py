@@ -175,8 +175,8 @@ def test_on_one_axis_the_least_value_is_found(options):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"antennae": "both"}, "antennae must be 'best' or 'current', got 'both'"),
-        ({"antennae": None}, "antennae must be 'best' or 'current', got None"),
+        ({"antennae": "both"}, "antennae must be one of 'best', 'current', got 'both'"),
+        ({"antennae": None}, "antennae must be one of 'best', 'current', got None"),
         ({"probes": 0}, "probes must be a whole number of at least 1, got 0"),
         ({"probes": 2.0}, "probes must be a whole number of at least 1, got 2.0"),
     ],

@@ -319,7 +319,6 @@ def test_a_flat_function_is_no_trouble(optimizer):
         (lambda x: x, "(N, 6)"),
         (lambda x: sphere(x)[:, None], "(N, 1)"),
         (lambda x: float((x**2).sum()), "()"),
-        (lambda x: None, "()"),
         (lambda x: np.append(sphere(x), 0.0), "(N+1,)"),
     ],
 )
@@ -332,6 +331,21 @@ def test_a_function_of_the_wrong_shape_is_refused_with_the_cure(default, f, got)
     cure = str(refused.value).split("one point: ", 1)[1]
     cured = eval(cure, {"np": np, "f": lambda point: float((point**2).sum())})
     assert default(cured, BOUNDS, 60, 0).value == pytest.approx(default(sphere, BOUNDS, 60, 0).value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("f", "message"),
+    [
+        (lambda x: None, "what f returns must be a number or an array of numbers: got None"),
+        (lambda x: "much", "what f returns must be a number or an array of numbers: got text, 'much'"),
+        (lambda x: sphere(x) + 1j, "what f returns must be a number or an array of numbers: got complex numbers"),
+        (3, "f must be a function, called as f(points), got 3"),
+        (float, "f must be a function, called as f(points), got <class 'float'>"),
+    ],
+)
+def test_what_gives_no_numbers_is_refused(default, f, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        default(f, BOUNDS, 60, 0)
 
 
 WRONG_BOUNDS = [

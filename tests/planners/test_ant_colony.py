@@ -505,10 +505,13 @@ def refuses(message, risk_map=BAD, ends=ENDS, **options):
         ({"initial_pheromone": np.nan}, "initial_pheromone must be finite"),
         ({"max_pheromone": (15.0, 1.0)}, "max_pheromone must be one number"),
         ({"risk_weight": 0.0}, "risk_weight, length_weight, threat_weight are all 0"),
+        ({"height_guided": 1}, "height_guided must be True or False, got 1"),
+        ({"record": "no"}, "record must be True or False, got 'no'"),
+        ({"as_printed": True, "alpha": -1.0}, "alpha must be finite and at least 0, got -1"),
         ({"length_weight": -1.0}, "length_weight must be finite and at least 0, got -1"),
         ({"max_turn": 60}, "max_turn must be from 0 to 3.14159 rad"),
         ({"max_pitch": np.nan}, "max_pitch must be from 0 to .* got nan"),
-        ({"min_clearance": -1.0}, "min_clearance must be a distance in metres, at least 0"),
+        ({"min_clearance": -1.0}, "min_clearance must be finite and at least 0, got -1"),
     ],
 )
 def test_arguments_out_of_range_are_refused(options, message):

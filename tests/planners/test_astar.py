@@ -399,6 +399,8 @@ ENDS = (0.5, 0.5, 0.5), (3.5, 3.5, 3.5)
         (lambda: astar(OPEN, ENDS[0], (9, 9, 9)), "goal .* lies outside of the map: x 0 to 4"),
         (lambda: astar(OPEN, ENDS[0], (3, 3)), "goal must be three numbers"),
         (lambda: astar(OPEN, ENDS[0], (0.1, 0.9, 0.5)), "lie in the same voxel"),
+        (lambda: astar(OPEN, *ENDS, record="no"), "record must be True or False, got 'no'"),
+        (lambda: penalty_zone(OPEN.occupied, 3.5, penalty=1), "city must be a City, got ndarray"),
         (lambda: penalty_zone(OPEN, 0, penalty=1), "safe_distance must be .* above 0, got 0"),
         (lambda: penalty_zone(OPEN, -3.5, penalty=1), "safe_distance must be .* above 0, got -3.5"),
         (lambda: penalty_zone(OPEN, np.nan, penalty=1), "safe_distance must be .* got nan"),

@@ -227,9 +227,9 @@ def test_wins_of_one_are_losses_of_the_other():
 @pytest.mark.parametrize(
     ("names", "message"),
     [
-        (("c", "a"), "planner must be one of a, b, got 'c'"),
-        (("a", "A"), "other must be one of a, b, got 'A'"),
-        (("a", 0), "other must be one of a, b, got 0"),
+        (("c", "a"), "planner must be one of 'a', 'b', got 'c'"),
+        (("a", "A"), "other must be one of 'a', 'b', got 'A'"),
+        (("a", 0), "other must be one of 'a', 'b', got 0"),
     ],
 )
 def test_wins_of_a_planner_that_was_not_compared_are_refused(names, message):
@@ -284,11 +284,34 @@ def test_several_processes_give_the_same_comparison(pretended):
 
 
 @pytest.mark.parametrize(
-    ("planners", "maps", "seeds"), [({}, MAPS, range(2)), (PLANNERS, [], range(2)), (PLANNERS, MAPS, [])]
+    ("wrong", "message"),
+    [
+        ({"planners": {}}, "planners must hold at least 1, got 0"),
+        ({"planners": ant_colony}, "planners must be something by name, as in {'A*': ...}, got function"),
+        (
+            {"planners": {"ants": "ant_colony"}},
+            "planners['ants'] must be a function, called as planner(risk_map, start, ",
+        ),
+        ({"planners": {"none": lambda **named: None}}, "what planners return must be a Route, got NoneType"),
+        ({"planners": {"line": lambda **named: Route(LINE)}}, "planners must use the budget of 8, given used None"),
+        ({"maps": []}, "maps must hold at least 1 RiskMap, got 0"),
+        ({"maps": 3}, "maps must be a list of RiskMap, got int"),
+        ({"maps": [MAPS[0], MAPS[0].city]}, "maps[1] must be a RiskMap, got City"),
+        ({"seeds": []}, "seeds must hold at least 1, got 0"),
+        ({"seeds": 3}, "seeds must be whole numbers, such as range(10), got 3"),
+        ({"seeds": [1, 0.5]}, "seeds must be whole numbers of at least 0, such as range(10), got 0.5 in them"),
+        ({"budget": 8.0}, "budget must be a whole number of at least 1, got 8.0"),
+        ({"progress": "no"}, "progress must be True or False, got 'no'"),
+    ],
 )
-def test_nothing_to_compare_is_refused(planners, maps, seeds):
-    with pytest.raises(ValueError, match="planners, maps and seeds must each have at least one"):
-        compare(planners, maps, seeds=seeds)
+def test_what_can_t_be_compared_is_named(wrong, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        compare(**({"planners": PLANNERS, "maps": MAPS, "seeds": [0], "budget": 8} | wrong))
+
+
+def test_a_comparison_says_what_was_compared():
+    assert repr(given(np.zeros((2, 3, 10)))) == "<Comparison of a, b: 3 maps × 10 seeds>"
+    assert repr(given(np.zeros((1, 1, 1)))) == "<Comparison of a: 1 map × 1 seed>"
 
 
 def test_a_repeated_seed_is_refused():

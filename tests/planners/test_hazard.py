@@ -213,6 +213,7 @@ ENDS = (0.5, 0.5, 0.5), (3.5, 3.5, 3.5)
         ({"sigma": 1.0, "natural_frequency": np.inf}, "natural_frequency must be finite and above 0, got inf"),
         ({"sigma": 1.0, "crash_price": -1.0}, "crash_price must be finite and at least 0, got -1"),
         ({"sigma": 1.0, "crash_price": "much"}, "crash_price must be a number"),
+        ({"sigma": 1.0, "any_angle": 1}, "any_angle must be True or False, got 1"),
         ({"sigma": 1.0, "mean_offset": (1.0,)}, "mean_offset must be two or three finite numbers"),
         ({"sigma": 1.0, "mean_offset": (1.0, np.nan)}, "mean_offset must be two or three finite numbers"),
     ],
@@ -220,6 +221,11 @@ ENDS = (0.5, 0.5, 0.5), (3.5, 3.5, 3.5)
 def test_bad_questions_are_refused_with_the_reason(question, message):
     with pytest.raises(ValueError, match=message):
         hazard_astar(OPEN, *ENDS, **question)
+
+
+def test_a_price_is_that_of_a_city():
+    with pytest.raises(ValueError, match="city must be a City, got ndarray"):
+        hazard_price(OPEN.occupied, sigma=1.0)
 
 
 def test_ends_that_can_t_be_flown_are_refused():

@@ -2,6 +2,7 @@
 
 import itertools
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -485,6 +486,12 @@ WEAK = UAV(**(vars(LIGHT_QUADROTOR) | {"thrust": 20.0}))
         ({"zone": "cube"}, "zone must be one of 'ball', 'ring', got 'cube'"),
         ({"interval": 0.0}, "interval must be finite and above 0, got 0"),
         ({"interval": (1.0, 2.0)}, "interval must be one number"),
+        ({"zone": ["ball"]}, "zone must be one of 'ball', 'ring'"),
+        ({"uav": "drone"}, "uav must be a UAV, got str"),
+        ({"record": 2}, "record must be True or False, got 2"),
+        ({"disturbance": Wind}, "disturbance must be a function, called as"),
+        ({"mean_offset": 1.0, "as_printed": True}, "mean_offset must be two or three finite numbers"),
+        ({"penalty": -1.0, "load": "heavy", "disturbance": "heavy"}, "penalty must be finite and at least 0, got -1"),
         ({"penalty": -1.0, "as_printed": True}, "penalty must be finite and at least 0, got -1"),
     ],
 )
@@ -505,6 +512,29 @@ def test_bad_questions_are_refused_with_the_reason(table1, question, message):
 def test_what_is_wrong_with_a_later_disturbance_is_said_with_its_time(table1, later, message):
     with pytest.raises(ValueError, match=message):
         repare(table1, *FAR, disturbance=lambda clock: "mild" if clock < 5 else later)
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda city: flight_conditions("light", "mild", "drone"), "uav must be a UAV, got str"),
+        (lambda city: flight_conditions("light", "mild", clock=-1.0), "clock must be finite and at least 0, got -1"),
+        (lambda city: repare_price(city.occupied, flight_conditions("light", "mild")), "city must be a City"),
+        (lambda city: repare_price(city, ("light", "mild")), "conditions must be a Conditions, got tuple: flight_cond"),
+        (lambda city: repare_price(city, flight_conditions("light", "mild"), zone=["ball"]), "zone must be one of"),
+    ],
+)
+def test_bad_questions_about_conditions_and_prices_are_refused(table1, ask, message):
+    with pytest.raises(ValueError, match=message):
+        ask(table1)
+
+
+@pytest.mark.parametrize("question", [{}, {"mean_offset": (1.0, 0.5)}, {"as_printed": True}])
+def test_where_there_is_nothing_to_hit_the_way_is_straight(question):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        route = repare(City(np.zeros((9, 9, 9), bool)), (1, 4, 4), (8, 4, 4), **question)
+    assert route.cost == pytest.approx(7.0)
 
 
 def test_ends_that_can_t_be_flown_are_refused_even_when_grounded(table1):

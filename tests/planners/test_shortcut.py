@@ -233,6 +233,10 @@ def test_a_line_along_the_face_of_an_obstacle_is_blocked_on_either_side(mirrored
         (Route(np.ones((2, 3))), OPEN, {"min_clearance": -1.0}, "min_clearance must be .* at least 0, got -1"),
         (Route(np.ones((2, 3))), OPEN, {"price": np.ones(3)}, "price must have the city's shape"),
         (Route(np.ones((2, 3))), OPEN, {"price": np.full(OPEN.shape, np.nan)}, "price must be finite"),
+        (Route(np.ones((2, 3))), OPEN, {"price": np.nan}, "price must be finite and above 0, got nan"),
+        (Route(np.ones((2, 3))), OPEN, {"price": -3.0}, "price must be finite and above 0, got -3"),
+        (Route(np.ones((2, 3))), OPEN, {"price": "much"}, "price must be a number or an array of numbers: got text"),
+        (Route(np.ones((2, 3))), OPEN, {"price": [1.0, [2.0, 3.0]]}, "price must be a number or an array of numbers"),
     ],
 )
 def test_bad_questions_are_refused_with_the_reason(route, city, options, message):

@@ -2,6 +2,7 @@
 
 import importlib
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -412,7 +413,7 @@ def refuses(message, risk_map=None, ends=CAMPUS_FLIGHT, **options):
         ({"threat_weight": -1.0}, "threat_weight must be finite and at least 0, got -1"),
         ({"max_turn": 60}, "max_turn must be from 0 to 3.14159 rad"),
         ({"max_pitch": np.nan}, "max_pitch must be from 0 to .* got nan"),
-        ({"min_clearance": -1.0}, "min_clearance must be a distance in metres, at least 0"),
+        ({"min_clearance": -1.0}, "min_clearance must be finite and at least 0, got -1"),
         ({"swarm": 0}, "swarm must be a whole number of at least 1, got 0"),
         ({"probes": 0}, "probes must be a whole number of at least 1, got 0"),
         ({"decay": 2.0}, "decay must be above 0 and at most 1, or None, got 2.0"),
@@ -453,6 +454,7 @@ def test_refine_refuses_what_it_cannot_refine():
         ("it doesn't: stuck", Route(np.empty((0, 3)), reached=False, reason="stuck"), {}),
         ("route must be a Route, got ndarray", exact.points, {}),
         ("budget must be a whole number of at least 4, got 3", exact, {"budget": 3}),
+        ("risk_map must be a RiskMap, got City", exact, {"risk_map": BAD.city}),
         ("lie in the same voxel", Route(np.vstack([exact.points, exact.points[:1]])), {}),
         ("goal .* lies outside of the map", Route(np.vstack([exact.points, [(99, 0, 0)]])), {}),
         ("risk_weight, length_weight, threat_weight are all 0", exact, {"risk_weight": 0.0}),
@@ -465,4 +467,39 @@ def test_refine_refuses_what_it_cannot_refine():
             occupied[1, 0, 0] = True
             risk_map = made_of(occupied)
         with pytest.raises(ValueError, match=message):
-            refine(route, risk_map, **({"rng": 0} | options))
+            refine(route, **({"risk_map": risk_map, "rng": 0} | options))
+
+
+def test_a_route_planned_lower_than_the_map_asks_for_is_refined_with_its_own_height():
+    """Its ends would have to be left and reached vertically, and its first and last points lie elsewhere."""
+    high = replace(BAD, min_height=3.0)
+    low = least_risk(high, *ENDS, min_height=0.5)
+    words = r"route must begin and end, .* at min_height=3 m above ground: .* that it was planned with, 0\.5 m"
+    with pytest.raises(ValueError, match=words):
+        refine(low, high, rng=0, budget=20)
+    assert refine(low, high, rng=0, budget=20, min_height=0.5).reached
+    risen = least_risk(high, *ENDS)
+    assert risen.takeoff == 1
+    assert refine(risen, high, rng=0, budget=20).takeoff == 1
+    with pytest.raises(ValueError, match=r"at min_height=0 m above ground: .* planned with, 3 m"):
+        refine(risen, high, rng=0, budget=20, min_height=0.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (
+            {"swarn": 10},
+            "waypoint_swarm has no argument 'swarn'; it takes rng, budget, .*for optimizer='pso_bas' swarm, ",
+        ),
+        (
+            {"maxturn": 1.0},
+            "has no argument 'maxturn'; it takes .*max_turn.*, antennae, antenna, decay, probes, block, ",
+        ),
+        ({"optimizer": "pso", "antenna": 0.1}, "has no argument 'antenna'; .*for optimizer='pso' swarm, inertia, c1"),
+        ({"optimizer": "bas", "swarm": 10}, "has no argument 'swarm'; .*for optimizer='bas' antenna, decay, greedy"),
+    ],
+)
+def test_an_unknown_setting_is_told_with_all_that_are_known(options, message):
+    with pytest.raises(TypeError, match=message):
+        waypoint_swarm(BAD, *ENDS, rng=0, **options)

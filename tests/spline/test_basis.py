@@ -243,6 +243,27 @@ def test_wrong_control_points_are_refused(control, message):
         cubic_bspline(control)
 
 
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: subdivided([(0, 0)]), "control must be at least 2 points"),
+        (lambda: subdivided([0, 1, 2]), "control must have shape (N, M), got (3,)"),
+        (lambda: subdivided([(0, 0), (1, np.nan)]), "control must be finite, got nan"),
+        (lambda: subdivided("much"), "control must be a number or an array of numbers: got text"),
+        (lambda: fitted([(0, 0)], 4), "points must be at least 2, joined by a line, got 1"),
+        (lambda: fitted([0, 1, 2], 4), "points must have shape (N, M), got (3,)"),
+        (lambda: fitted([(0, 0), (1, np.inf)], 4), "points must be finite, got inf"),
+        (lambda: fitted([(0, 0), (1, 1)], 1), "count must be a whole number of at least 2, got 1"),
+        (lambda: fitted([(0, 0), (1, 1)], 4.0), "count must be a whole number of at least 2, got 4.0"),
+        (lambda: fitted([(0, 0), (1, 1)], 10**5), "count must be at most 10,000"),
+        (lambda: cubic_bspline([(0, 0), (1, 1)], 10**7), "per_segment must be at most 1,000,000"),
+    ],
+)
+def test_what_makes_no_line_is_refused(call, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        call()
+
+
 @pytest.mark.parametrize("per_segment", [0, -1, 2.0])
 def test_a_wrong_number_of_points_per_segment_is_refused(per_segment):
     with pytest.raises(ValueError, match=f"per_segment must be a whole number of at least 1, got {per_segment}"):
@@ -263,7 +284,7 @@ def test_unknown_ends_are_refused(ends):
         cubic_bspline(np.zeros((4, 2)), ends=ends)
 
 
-@pytest.mark.parametrize("derivative", [3, -1, 1.0, "1", None, np.array([0, 1])])
+@pytest.mark.parametrize("derivative", [3, -1, 1.0, True, "1", None, np.array([0, 1])])
 def test_unknown_derivatives_are_refused(derivative):
     with pytest.raises(ValueError, match=re.escape(f"derivative must be 0, 1 or 2, got {derivative!r}")):
         cubic_bspline(np.zeros((4, 2)), derivative=derivative)
@@ -376,6 +397,7 @@ def test_degree_one_is_the_polyline(control, t):
         (lambda: basis_functions([0.5, 4.1], np.arange(5), 3), "t must be from 0 to 4 (the knots), got 4.1"),
         (lambda: basis_functions(-0.1, np.arange(5), 3), "t must be from 0 to 4 (the knots), got -0.1"),
         (lambda: basis_functions(np.nan, np.arange(5), 3), "t must be from 0 to 4 (the knots), got nan"),
+        (lambda: basis_functions([[1.0, 2.0]], np.arange(5), 3), "t must have shape (N,), got (1, 2)"),
         (lambda: basis_functions(1, np.arange(5), -1), "degree must be a whole number of at least 0, got -1"),
         (lambda: basis_functions(1, np.arange(5), 1.5), "degree must be a whole number of at least 0, got 1.5"),
         (

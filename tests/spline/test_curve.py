@@ -422,6 +422,25 @@ def test_it_says_what_it_is():
         (lambda: Curve([(0, 0, 0), (1, np.nan, 1)]), "control must be finite, got nan"),
         (lambda: Curve([(0, 0, 0), (1, 1, 1)], ends="none"), "ends must be one of 'phantom', 'clamped', got 'none'"),
         (lambda: Curve([(0, 0, 0), (1, 1, 1)], step=0), "step must be finite and above 0, got 0"),
+        (lambda: Curve([(0, 0, 0), (30, 40, 0)], step=1e-9), "step must be at least 5e-06 m, or a curve of 50 m"),
+        (lambda: Curve([(0, 0, 0), (30, 40, 0)]).route(1e-9), "step must be at least 5e-06 m"),
+        (lambda: Curve([(0, 0, 0), (1, 1, 1)], planner=3), "planner must be text, got 3"),
+        (
+            lambda: Curve([(0, 0, 0), (1, 1, 1)], info=[1]),
+            "info must be something by name, as in {'A*': ...}",
+        ),
+        (lambda: Curve([(0, 0, 0), (1, 1, 1)], takeoff=-1), "takeoff must be a whole number of at least 0, got -1"),
+        (lambda: Curve([(0, 0, 0), (1, 1, 1)], landing="1"), "landing must be a whole number of at least 0, got '1'"),
+        (
+            lambda: Curve([(0, 0, 0), (0, 0, 1), (1, 1, 1)], takeoff=1, landing=1),
+            "takeoff and landing must leave a segment between 3 control points, got 1 and 1",
+        ),
+        (lambda: Curve([(0, 0, 0), (1, 1, 1)], max_height="high"), "max_height must be a number"),
+        (lambda: Curve([(0, 0, 0), (1, 1, 1)], max_height=-1.0), "max_height must be above min_height"),
+        (
+            lambda: Curve([(0, 0, 0), (1, 1, 1)]).least_distances(City(np.zeros((2, 2, 2), bool)), None),
+            "at_most must be a number",
+        ),
         (lambda: Curve([(0, 0, 0), (1, 1, 1)], step=np.inf), "step must be finite and above 0, got inf"),
         (lambda: Curve([(0, 0, 0), (1, 1, 1)]).at(1.01), "parameter must be from 0 to 1 (segments), got 1.01"),
         (lambda: Curve([(0, 0, 0), (1, 1, 1)]).at(-0.1), "parameter must be from 0 to 1 (segments), got -0.1"),
@@ -444,3 +463,15 @@ def test_twice_as_large_a_curve_bends_half_as_much(scale, turns):
     moving = small.curvature < 1e3
     if len(small.points) == len(large.points):  # else rounding made one part more
         assert large.curvature[moving] * scale == pytest.approx(small.curvature[moving], rel=1e-6, abs=1e-9)
+
+
+def test_a_curve_keeps_its_settings_as_plain_numbers_and_texts():
+    noted = {"rounds": 1}
+    curve = Curve(
+        [(0, 0, 0), (0, 0, 9), (9, 9, 9)], np.str_("phantom"), np.float32(0.5), np.str_("A*"), noted, np.uint8(1),
+        max_height=np.int8(9),
+    )  # fmt: skip
+    noted["rounds"] = 2
+    kept = curve.ends, curve.step, curve.planner, curve.takeoff, curve.max_height
+    assert [*map(type, kept)] == [str, float, str, int, float]
+    assert curve.info == {"rounds": 1}

@@ -442,6 +442,9 @@ def test_an_unknown_limit_is_refused_with_those_that_are():
         ({"min_clearance": -0.1}, "min_clearance must be finite and at least 0, got -0.1"),
         ({"min_clearance": np.inf}, "min_clearance must be finite and at least 0, got inf"),
         ({"as_printed": True, "max_pitch": 60.0}, "max_pitch must be from"),
+        ({"as_printed": True, "bank": 30.0}, "bank must be from"),
+        ({"as_printed": True, "wind": 5.0}, "wind must be two or three finite numbers"),
+        ({"as_printed": True, "max_height": -1.0}, "max_height must be above min_height (0 m), got -1.0"),
         ({"max_turn": 60.0}, "max_turn must be from"),
         ({"as_printed": True, "max_turn": 0.0}, "max_turn must be finite and above 0"),
         ({"reading": "level"}, "reading must be one of 'plan', 'space', got 'level'"),
@@ -461,6 +464,8 @@ def test_wrong_questions_about_feasibility_are_refused(arguments, message):
         (lambda: greatest_speed(straight(), 1.38), "uav must be a UAV, got float"),
         (lambda: greatest_speed(straight(), SWIFT, (1, 2, 3, 4)), "wind must be two or three finite numbers"),
         (lambda: greatest_speed(straight(), SWIFT, bank=30), "rad (from degrees: numpy.radians), got 30"),
+        (lambda: tilted_thrust("curve", SWIFT, 5.0), "curve must be a Curve, got str"),
+        (lambda: tilted_thrust(straight(), None, 5.0), "uav must be a UAV, got NoneType"),
         (lambda: tilted_thrust(straight(), SWIFT, 0.0), "speed must be finite and above 0, got 0"),
         (lambda: tilted_thrust(straight(), SWIFT, 5.0, np.inf), "wind must be two or three finite numbers"),
     ],
@@ -468,3 +473,10 @@ def test_wrong_questions_about_feasibility_are_refused(arguments, message):
 def test_wrong_questions_about_speed_and_thrust_are_refused(call, message):
     with pytest.raises(ValueError, match=re.escape(message)):
         call()
+
+
+def test_what_is_none_is_no_minus_none():
+    """A level curve neither climbs nor sinks; its sink rate would read −0 m/s."""
+    report = feasibility(straight(), OPEN, replace(SWIFT, climb_speed=5.0, sink_speed=4.0))
+    assert "-0 " not in str(report)
+    assert repr(report["sink rate"]) == "<Limit sink rate: 0 m/s, at most 4, met>"

@@ -66,7 +66,7 @@ def bas(
         Go to the better tip if f is less there than here, else stay: two evaluations per step, not three.
     block : int, optional
         Probe along so many neighbouring coordinates at a time, such as the 3 of one waypoint; all by default.
-    start : (D,) array, optional
+    start : (D,) or (1, D) array, optional
         Where the beetle begins; else anywhere within the bounds.
     as_printed : bool
         Directions drawn from a cube (Eq. 17), which prefer its corners; else from a Gaussian, even on the sphere.
@@ -82,7 +82,8 @@ def bas(
         If `bounds` haven't shape (D, 2), are reversed or not finite. If `budget` is below 4, or 3 if greedy. If
         `antenna` is not above 0. If `decay` is not above 0 and at most 1, or None without `greedy`. If `block` doesn't
         divide the coordinates. If `start` lies outside of the bounds. If `target` is not finite. If `rng` is no
-        generator and no seed. If `f` doesn't return one value per point.
+        generator and no seed. If `f` is no function, or doesn't return one value per point. If `greedy` or `as_printed`
+        is neither True nor False.
 
     See Also
     --------
@@ -104,7 +105,7 @@ def bas(
     True
     """
     rng = checks.generator("rng", rng)
-    checks.flag("as_printed", as_printed)
+    as_printed, greedy = checks.flag("as_printed", as_printed), checks.flag("greedy", greedy)
     if decay is None and not greedy:
         raise ValueError("decay must be a number unless greedy: a beetle that walks either way has no gain to follow")
     antennae = antennae_of(bounds, antenna, decay, block, as_printed)
@@ -140,16 +141,12 @@ def antennae_of(
     bounds: npt.ArrayLike, antenna: float, decay: float | None, block: int | None, from_cube: bool
 ) -> Antennae:
     low, high = checked_bounds(bounds)
-    block = len(low) if block is None else block
-    checks.whole("block", block, least=1)
+    block = checks.whole("block", len(low) if block is None else block, least=1)
     if len(low) % block:
         raise ValueError(f"block must divide the {len(low)} coordinates, got {block}")
-    checks.positive_number("antenna", antenna)
-    if decay is not None:
-        checks.number("decay", decay)
-        if not 0 < decay <= 1:
-            raise ValueError(f"decay must be above 0 and at most 1, or None, got {decay!r}")
-    return Antennae(low, high, float(antenna), decay, block, from_cube)
+    if decay is not None and not 0 < (decay := checks.number("decay", decay)) <= 1:
+        raise ValueError(f"decay must be above 0 and at most 1, or None, got {decay!r}")
+    return Antennae(low, high, checks.positive_number("antenna", antenna), decay, block, from_cube)
 
 
 def first_lengths(antennae: Antennae, beetles: int) -> np.ndarray:

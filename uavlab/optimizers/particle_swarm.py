@@ -70,7 +70,7 @@ def pso(
         Pulls of the particle's own best and of the swarm's, at least 0.
     v_max : float
         Longest step as a share of the range of each coordinate, above 0; infinite for no limit.
-    start : (M, D) array, optional
+    start : (M, D) or (D,) array, optional
         First positions of M ≤ N particles; the others are drawn evenly within the bounds.
     target : float, optional
         Stop at the end of the iteration in which the best value is at most this, PSO-BAS's "accuracy standard" (4.3,
@@ -89,7 +89,8 @@ def pso(
         If `bounds` haven't shape (D, 2), are reversed or not finite. If `budget` is below `swarm`, or `swarm` below 1.
         If `inertia` is not two finite numbers. If `c1` or `c2` is negative or not finite. If `v_max` is not above 0. If
         `start` lies outside of the bounds or has more than `swarm` rows. If `target` is not finite. If `rng` is no
-        generator and no seed. If `f` doesn't return one value per point.
+        generator and no seed. If `f` is no function, or doesn't return one value per point. If `as_printed` is neither
+        True nor False.
 
     See Also
     --------
@@ -117,7 +118,7 @@ def pso(
     rng = checks.generator("rng", rng)
     settings = swarm_settings(inertia, c1, c2, v_max, as_printed)
     low, high = checked_bounds(bounds)
-    checks.whole("swarm", swarm, least=1)
+    swarm = checks.whole("swarm", swarm, least=1)
     count = Counter(f, len(low), checked_budget(budget, swarm, "one swarm"), target)
     x = first_points(start, low, high, swarm, rng)
     velocity = np.zeros_like(x)
@@ -149,9 +150,8 @@ def swarm_settings(inertia, c1, c2, v_max, as_printed):
     ends = checks.numbers("inertia", PRINTED_INERTIA if as_printed else inertia)
     if ends.shape != (2,) or not np.isfinite(ends).all():
         raise ValueError(f"inertia must be two numbers, ω at the beginning and at the end, got {inertia!r}")
-    checks.not_negative_number("c1", c1)
-    checks.not_negative_number("c2", c2)
-    checks.number("v_max", v_max)
+    c1, c2 = checks.not_negative_number("c1", c1), checks.not_negative_number("c2", c2)
+    v_max = checks.number("v_max", v_max)
     if not v_max > 0:
         raise ValueError(f"v_max must be a share of the range, above 0, got {v_max!r}; infinite for no limit")
     return tuple(ends.tolist()), c1, c2, np.inf if as_printed else v_max

@@ -81,7 +81,7 @@ def pso_bas(
     ValueError
         If `antennae` is unknown. If `antenna` is not above 0. If `decay` is not above 0 and at most 1. If `probes` is
         below 1. If `block` doesn't divide the coordinates. If `f`, `bounds`, `budget`, `rng`, `swarm`, `inertia`, `c1`,
-        `c2`, `v_max`, `start` or `target` is out of its range, see `pso`.
+        `c2`, `v_max`, `start`, `target` or `as_printed` is out of its range, see `pso`.
 
     See Also
     --------
@@ -99,10 +99,8 @@ def pso_bas(
     """
     rng = checks.generator("rng", rng)
     settings = swarm_settings(inertia, c1, c2, v_max, as_printed)
-    if antennae not in ("best", "current"):
-        raise ValueError(f"antennae must be 'best' or 'current', got {antennae!r}")
-    checks.whole("probes", probes, least=1)
-    checks.whole("swarm", swarm, least=1)
+    checks.one_of("antennae", antennae, ("best", "current"))
+    probes, swarm = checks.whole("probes", probes, least=1), checks.whole("swarm", swarm, least=1)
     if as_printed:
         decay = DECAY
         if block is None and len(checks.numbers("bounds", bounds)) % PRINTED_BLOCK == 0:

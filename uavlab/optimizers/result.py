@@ -69,10 +69,9 @@ class Counter:
 
     def __init__(self, f: Function, dimensions: int, budget: int, target: float | None = None) -> None:
         if target is not None:
-            checks.number("target", target)
-            checks.finite("target", target)
-        self.f = f
-        self.target = -np.inf if target is None else float(target)
+            checks.finite("target", target := checks.number("target", target))
+        self.f = checks.function("f", f, "f(points)")
+        self.target = -np.inf if target is None else target
         self.left = budget
         self.best = np.full(dimensions, np.nan)
         self.value = np.inf
@@ -87,7 +86,7 @@ class Counter:
         asked = points[: self.left]
         if len(asked) == 0:
             return values
-        given = np.array(self.f(asked.copy()), dtype=float)  # f may keep its points, or change them
+        given = np.array(checks.numbers("what f returns", self.f(asked.copy())))  # it may keep both, or change them
         if given.shape != (len(asked),):
             raise ValueError(
                 f"f must return one value per point: for {asked.shape} shape ({len(asked)},), got {given.shape}; "

@@ -134,7 +134,8 @@ def ant_colony(
         generator and no seed. If `budget` is below one generation for each split and one more. If `ants` is below 1, or
         `splits` below 0. If `alpha`, `beta`, `gamma` or `min_pheromone` is negative or not finite. If `evaporation` is
         not between 0 and 1. If `deposit`, `initial_pheromone` or `demand` is not above 0. If `min_pheromone`,
-        `initial_pheromone` and `max_pheromone` are not in order.
+        `initial_pheromone` and `max_pheromone` are not in order. If `height_guided`, `drift`, `record` or `as_printed`
+        is neither True nor False.
 
     See Also
     --------
@@ -159,14 +160,12 @@ def ant_colony(
     """
     began = time.perf_counter()
     rng = checks.generator("rng", rng)
-    checks.flag("as_printed", as_printed)
-    habits = (
-        PRINTED
-        if as_printed
-        else Habits(alpha, beta, gamma, evaporation, deposit, min_pheromone, initial_pheromone, max_pheromone)
-    )
-    check_habits(habits)
-    check_budget(budget, ants, splits, demand)
+    for name, value in (("as_printed", as_printed), ("height_guided", height_guided), ("record", record)):
+        checks.flag(name, value)
+    ours = Habits(alpha, beta, gamma, evaporation, deposit, min_pheromone, initial_pheromone, max_pheromone)
+    ours = checked_habits(ours)
+    habits = PRINTED if as_printed else ours
+    budget, ants, splits = checked_budget(budget, ants, splits, demand)
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     allowed = checked_length(max_length)
     longest = in_cells(risk_map.city, allowed)
@@ -207,25 +206,24 @@ def why_none_arrived(risk_map: RiskMap, query: Query, limits: Limits, max_length
     return f"each ran into a dead end of voxels it may not turn to, or had visited; more ants may help, or a {cure}"
 
 
-def check_budget(budget: int, ants: int, splits: int, demand: float | None) -> None:
-    """Refuse one that isn't enough for a generation of each search, and a demand that is no cost."""
+def checked_budget(budget: int, ants: int, splits: int, demand: float | None) -> tuple[int, int, int]:
+    """One that is enough for a generation of each search, ants and splits; a demand that is no cost is refused."""
     if demand is not None:
         checks.positive_number("demand", demand)
-    checks.whole("ants", ants, least=1)
-    checks.whole("splits", splits, least=0)
-    checks.whole("budget", budget, least=1)
+    ants, splits = checks.whole("ants", ants, least=1), checks.whole("splits", splits, least=0)
+    budget = checks.whole("budget", budget, least=1)
     least = ants * (splits + 1) * (2 if splits else 1)
     if budget < least:
         raise ValueError(f"budget must be at least {least}, for {ants} ants and {splits} splits, got {budget}")
+    return budget, ants, splits
 
 
-def check_habits(habits: Habits) -> None:
-    """Refuse those that are out of their range."""
-    for name in ("alpha", "beta", "gamma"):
-        checks.not_negative_number(name, getattr(habits, name))
-    checks.number("evaporation", habits.evaporation)
-    checks.share("evaporation", habits.evaporation)
-    checks.positive_number("deposit", habits.deposit)
+def checked_habits(habits: Habits) -> Habits:
+    """Them as floats, within their ranges."""
+    named = {name: getattr(habits, name) for name in ("alpha", "beta", "gamma")}
+    alpha, beta, gamma = (checks.not_negative_number(name, weight) for name, weight in named.items())
+    checks.share("evaporation", evaporation := checks.number("evaporation", habits.evaporation))
+    deposit = checks.positive_number("deposit", habits.deposit)
     least = checks.not_negative_number("min_pheromone", habits.least)
     first = checks.positive_number("initial_pheromone", habits.first)
     most = checks.number("max_pheromone", habits.most)
@@ -233,3 +231,4 @@ def check_habits(habits: Habits) -> None:
         raise ValueError(
             f"min_pheromone, initial_pheromone and max_pheromone must be in order, got {least:g}, {first:g}, {most:g}"
         )
+    return Habits(alpha, beta, gamma, evaporation, deposit, least, first, most)

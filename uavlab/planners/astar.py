@@ -114,8 +114,8 @@ def astar(
     (<Route by A*: 151.9 m, 133 waypoints>, 3.5)
     """
     began = time.perf_counter()
-    checks.one_of("heuristic", heuristic, HEURISTICS)
-    checks.flag("as_printed", as_printed)
+    heuristic = checks.one_of("heuristic", heuristic, HEURISTICS)
+    as_printed, record = checks.flag("as_printed", as_printed), checks.flag("record", record)
     if as_printed and price is None:
         raise ValueError("as_printed needs a price: without a penalty zone Eq. 13 is plain A*")
     airspace = Airspace(city, min_clearance, min_height, max_height)
@@ -201,8 +201,8 @@ def penalty_zone(city: City, safe_distance: npt.ArrayLike, *, penalty: npt.Array
     Raises
     ------
     ValueError
-        If `safe_distance` is not finite and above 0, `penalty` not finite and at least 0, or one of them neither one
-        number nor of the city's shape. If `zone` is unknown.
+        If `city` is no City. If `safe_distance` is not finite and above 0, `penalty` not finite and at least 0, or one
+        of them neither one number nor of the city's shape. If `zone` is unknown.
 
     See Also
     --------
@@ -220,6 +220,7 @@ def penalty_zone(city: City, safe_distance: npt.ArrayLike, *, penalty: npt.Array
     >>> astar(city, (5, 5, 30), (95, 95, 30), price=zone)  # 4.7 m longer than without
     <Route by A*: 150.7 m, 131 waypoints>
     """
+    checks.instance("city", city, City)
     distance, weight = checks.numbers("safe_distance", safe_distance), checks.numbers("penalty", penalty)
     checks.positive("safe_distance", distance)
     checks.not_negative("penalty", weight)
@@ -229,7 +230,7 @@ def penalty_zone(city: City, safe_distance: npt.ArrayLike, *, penalty: npt.Array
     if checks.one_of("zone", zone, ("ball", "ring")) == "ball":
         near = city.clearance < distance - 1e-9 * city.cell
     else:
-        radii = np.maximum(1, np.ceil(distance / city.cell - 0.5 - 1e-9)).astype(int)
+        radii = np.clip(np.ceil(distance / city.cell - 0.5 - 1e-9), 1, max(city.shape)).astype(int)
         near = np.zeros(city.shape, dtype=bool)
         for radius in np.unique(radii):
             near |= (radii == radius) & ring_meets_obstacle(city.occupied, int(radius))

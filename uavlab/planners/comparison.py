@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.planners.least_risk import least_risk
-from uavlab.planners.swarm import check_refinement, refine
+from uavlab.planners.swarm import checked_refinement, refine
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap
 from uavlab.route import Route
 from uavlab.statistics import over_maps, share_over_maps
@@ -122,6 +122,11 @@ class Comparison:
     exact: list[Route]
     refinement: float = 0.0
 
+    def __repr__(self) -> str:
+        maps, seeds = self.gaps.shape[1:]
+        runs = f"{maps} map{'s' * (maps != 1)} × {seeds} seed{'s' * (seeds != 1)}"
+        return f"<Comparison of {', '.join(self.planners)}: {runs}>"
+
     def table(self) -> pandas.DataFrame:
         """A row per planner: median gap with its 95 % interval, 90 % quantile [%], runs that didn't arrive [%], time.
 
@@ -202,8 +207,7 @@ class Comparison:
         '100%, from 2.5% to 100%'
         """
         for name, value in (("planner", planner), ("other", other)):
-            if value not in self.planners:
-                raise ValueError(f"{name} must be one of {', '.join(self.planners)}, got {value!r}")
+            checks.one_of(name, value, self.planners)
         a, b = (self.gaps[self.planners.index(name)] for name in (planner, other))
         won = np.where(a == b, 0.5, a < b)
         return float(won.mean()), *share_over_maps(won)
@@ -243,8 +247,7 @@ class Comparison:
         >>> bool((evaluations <= 200).all()), bool((iterations <= 20).all())  # ten ants an iteration
         (True, True)
         """
-        checks.number("within", within)
-        checks.share("within", within)
+        checks.share("within", within := checks.number("within", within))
         final = 1 + self.histories[..., -1:]
         near = (1 + self.histories <= (1 + within) * final) & np.isfinite(final)
         evaluations = np.where(near.any(axis=-1), near.argmax(axis=-1) + 1, self.histories.shape[-1])
@@ -292,9 +295,11 @@ def compare_planners(
     Raises
     ------
     ValueError
-        If `planners`, `maps` or `seeds` is empty. If one of `seeds` is repeated. If one of `maps` has no route from
-        `start` to `goal`. If `refinement` is not from 0 to below 1. If one of `planners` takes another number of
-        evaluations than `budget`, or only some of them refine what they found. Also what the planners raise.
+        If `planners`, `maps` or `seeds` is empty, or holds what is no function, RiskMap or whole number of at least 0.
+        If one of `seeds` is repeated. If one of `maps` has no route from `start` to `goal`. If `budget` is below 1. If
+        `jobs` or `progress` is what `sweep` refuses. If `refinement` is not from 0 to below 1. If one of `planners`
+        takes another number of evaluations than `budget`, or only some of them refine what they found. Also what the
+        planners raise.
 
     See Also
     --------
@@ -312,12 +317,12 @@ def compare_planners(
     >>> bool((runs.gaps[0] < runs.gaps[1]).all())  # ants that see the risk always find less of it
     True
     """
-    seeds, maps = list(seeds), [maps] if isinstance(maps, RiskMap) else list(maps)
-    if not planners or not maps or not seeds:
-        raise ValueError("planners, maps and seeds must each have at least one")
-    if len(set(seeds)) < len(seeds):  # the same run twice would narrow an interval
-        raise ValueError(f"seeds must all be different, got {seeds}")
-    check_refinement(refinement)
+    planners = checks.by_name("planners", planners)
+    for name, planner in planners.items():
+        checks.function(f"planners[{name!r}]", planner, "planner(risk_map, start, goal, budget=…, rng=…)")
+    maps = [maps] if isinstance(maps, RiskMap) else checks.several("maps", maps, RiskMap)
+    seeds, budget = checked_seeds(seeds), checks.whole("budget", budget, least=1)
+    refinement, progress = checked_refinement(refinement), checks.flag("progress", progress)
     exact = [least_risk(risk_map, start, goal) for risk_map in maps]
     for number, route in enumerate(exact):
         if not route.reached:
@@ -332,10 +337,8 @@ def compare_planners(
     routes = sweep(one_run, cases, jobs=jobs, progress=progress, unit="run")
     shape = (len(planners), len(maps), len(seeds))
     for route in routes:
-        if route.info["evaluations"] != budget:
-            raise ValueError(
-                f"planners must use the budget of {budget}, {route.planner} used {route.info['evaluations']}"
-            )
+        if (used := route.info.get("evaluations")) != budget:
+            raise ValueError(f"planners must use the budget of {budget}, {route.planner} used {used}")
     firsts = routes[:: len(maps) * len(seeds)]
     refined = [route.info.get("refined", 0) for route in firsts]
     refuse_unequal(list(planners), refined)
@@ -346,6 +349,21 @@ def compare_planners(
     elapsed = np.array([route.info["elapsed"] for route in routes]).reshape(shape)
     iterations = [route.info["iterations"] for route in firsts]
     return Comparison(list(planners), gaps, histories, iterations, elapsed, exact, max(refined) / budget)
+
+
+def checked_seeds(seeds: Iterable[int]) -> list[int]:
+    """Whole numbers, all different: the same run twice would narrow an interval."""
+    if isinstance(seeds, str | Mapping) or not isinstance(seeds, Iterable):
+        raise ValueError(f"seeds must be whole numbers, such as range(10), got {seeds!r:.60}")
+    several = list(seeds)
+    for seed in several:
+        if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+            raise ValueError(f"seeds must be whole numbers of at least 0, such as range(10), got {seed!r:.60} in them")
+    if not several:
+        raise ValueError("seeds must hold at least 1, got 0")
+    if len(set(several)) < len(several):
+        raise ValueError(f"seeds must all be different, got {several}")
+    return several
 
 
 def refuse_unequal(names: list[str], refined: list[int]) -> None:
@@ -362,7 +380,8 @@ def one_run(planner: Planner, risk_map: RiskMap, budget: int, rng: int, refineme
     """A planner's route, refined with a share of the budget; where none was found, the rest isn't of use to it."""
     last = int(refinement * budget)
     found = planner(risk_map=risk_map, budget=budget - last, rng=rng, **ends)
-    if last == 0 or found.info["evaluations"] != budget - last:
+    checks.instance("what planners return", found, Route)
+    if last == 0 or found.info.get("evaluations") != budget - last:
         return found
     history, info = found.info["history"], {**found.info, "evaluations": budget, "refined": last}
     if not found.reached:

@@ -70,8 +70,8 @@ def hazard_price(
     Raises
     ------
     ValueError
-        If `sigma`, `speed` or `natural_frequency` is not finite and above 0. If `uav_diameter` or `crash_price` is
-        negative or not finite. If `mean_offset` is not two or three finite numbers.
+        If `city` is no City. If `sigma`, `speed` or `natural_frequency` is not finite and above 0. If `uav_diameter` or
+        `crash_price` is negative or not finite. If `mean_offset` is not two or three finite numbers.
 
     See Also
     --------
@@ -92,14 +92,13 @@ def hazard_price(
     >>> price[[9, 8, 7, 6], 30, 30].round(1)  # 0.5, 1.5, 2.5 and 3.5 m from a wall
     array([96.5, 58.9, 13.9,  2.1])
     """
-    for name, value in (("speed", speed), ("sigma", sigma), ("natural_frequency", natural_frequency)):
-        checks.positive_number(name, value)
-    for name, value in (("uav_diameter", uav_diameter), ("crash_price", crash_price)):
-        checks.not_negative_number(name, value)
+    checks.instance("city", city, City)
+    sigma, speed = checks.positive_number("sigma", sigma), checks.positive_number("speed", speed)
+    natural_frequency = checks.positive_number("natural_frequency", natural_frequency)
+    radius = checks.not_negative_number("uav_diameter", uav_diameter) / 2
+    crash_price = checks.not_negative_number("crash_price", crash_price)
     mean = checks.three("mean_offset", mean_offset)
-    return cached_price(
-        city, float(sigma), float(uav_diameter) / 2, mean, float(crash_price * natural_frequency / speed)
-    )
+    return cached_price(city, sigma, radius, mean, crash_price * natural_frequency / speed)
 
 
 @kept_for_city(4)
@@ -153,10 +152,11 @@ def hazard_astar(
     Raises
     ------
     ValueError
-        If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle or a no-fly zone, so near to
-        an obstacle that the body touches it, or above `max_height`. If both lie in one voxel. If `sigma`, `speed` or
-        `natural_frequency` is not above 0. If `uav_diameter` or `crash_price` is negative. If `mean_offset` is not two
-        or three finite numbers. If `min_height` is negative or not finite. If `max_height` is not above `min_height`.
+        If `city` is no City. If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle or a
+        no-fly zone, so near to an obstacle that the body touches it, or above `max_height`. If both lie in one voxel.
+        If `sigma`, `speed` or `natural_frequency` is not above 0. If `uav_diameter` or `crash_price` is negative. If
+        `any_angle` is neither True nor False. If `mean_offset` is not two or three finite numbers. If `min_height` is
+        negative or not finite. If `max_height` is not above `min_height`.
 
     See Also
     --------
@@ -177,6 +177,7 @@ def hazard_astar(
     (<Route by hazard A*: 146.4 m, 11 waypoints>, 6.3)
     """
     began = time.perf_counter()
+    any_angle = checks.flag("any_angle", any_angle)
     price = hazard_price(
         city, sigma, uav_diameter=uav_diameter, mean_offset=mean_offset, speed=speed,
         natural_frequency=natural_frequency, crash_price=crash_price,

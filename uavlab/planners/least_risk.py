@@ -30,6 +30,9 @@ from uavlab.risk import RiskMap
 from uavlab.route import Route
 from uavlab.spline.limits import MAX_PITCH
 
+MOST_LENGTHS = 10**4
+"""Of a front: each takes a search."""
+
 
 def least_risk(
     risk_map: RiskMap,
@@ -95,7 +98,7 @@ def least_risk(
         above `max_height`. If both lie in one voxel. If `risk_weight`, `length_weight` or `threat_weight` is negative
         or not finite, or all are 0. If `max_turn` is not from 0 to π, or `max_pitch` not from 0 to π/2. If
         `min_clearance` or `min_height` is negative or not finite. If `max_height` is not above `min_height`. If
-        `max_length` is not above 0. If `heuristic` is unknown.
+        `max_length` is not above 0. If `drift` is neither True nor False. If `heuristic` is unknown.
 
     See Also
     --------
@@ -116,8 +119,7 @@ def least_risk(
     11.2
     """
     began = time.perf_counter()
-    if heuristic not in ("backward", "zero"):
-        raise ValueError(f"heuristic must be 'backward' or 'zero', got {heuristic!r}")
+    checks.one_of("heuristic", heuristic, ("backward", "zero"))
     allowed = checked_length(max_length)
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
     weights = Weights.checked(risk_weight, length_weight, threat_weight, drift)
@@ -165,8 +167,8 @@ def pareto_front(
     risk_map, start, goal, max_turn, max_pitch, min_clearance, min_height, max_height, drift
         As for `least_risk`.
     lengths : int or array
-        Greatest lengths to ask for [m]; or how many, spread evenly from the shortest route's to that of the route of
-        least risk.
+        Greatest lengths to ask for [m]; or how many, from 2 to 10,000, spread evenly from the shortest route's to that
+        of the route of least risk.
 
     Returns
     -------
@@ -179,7 +181,8 @@ def pareto_front(
     ------
     ValueError
         If `risk_map`, `start`, `goal`, `max_turn`, `max_pitch`, `min_clearance`, `min_height` or `max_height` is what
-        `least_risk` refuses. If `lengths` is empty, below 2 as a count, or a length is not finite and above 0.
+        `least_risk` refuses, or `drift` neither True nor False. If `lengths` is empty, as a count below 2 or above
+        10,000, or a length is not finite and above 0.
 
     See Also
     --------
@@ -202,13 +205,13 @@ def pareto_front(
     """
     began = time.perf_counter()
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
-    count = int(lengths) if isinstance(lengths, int | np.integer) else None
-    if count is not None:
-        checks.whole("lengths", count, least=2)
-    elif np.size(lengths) == 0:
+    count = None
+    if isinstance(lengths, int | np.integer):
+        count = checks.whole("lengths", int(lengths), 2, MOST_LENGTHS)
+    elif (asked := checks.numbers("lengths", lengths).ravel()).size == 0:
         raise ValueError("lengths is empty: give how many, or at least one length [m]")
     else:
-        checks.positive("lengths", lengths)
+        checks.positive("lengths", asked)
     ends = flyable_endpoints(risk_map, start, goal, limits)
     weights = Weights(drift=checks.flag("drift", drift))
     price = price_per_cell(risk_map, weights)
@@ -224,7 +227,7 @@ def pareto_front(
             )
         ]  # fmt: skip
     if count is None:
-        asked = checks.numbers("lengths", lengths).ravel() / city.cell
+        asked = asked / city.cell
     else:
         safest, cost, _ = solve(query, True)
         if costs_nothing(query, safest):

@@ -26,6 +26,9 @@ OBSTACLES = ("voxels", "surface")
 CLOSEST = 0.05
 """The push of a wall that is touched would be infinite; it is taken at this distance [m]."""
 
+MOST_STEPS = 10**8
+"""More take all of the memory."""
+
 WINDOW = 1000
 """A continuous walk that is within two steps of where it was so many steps ago trembles on the spot.
 
@@ -88,7 +91,7 @@ def potential_field(
     step : float, optional
         Length of a continuous step [m]; half a cell by default.
     max_steps : int
-        After so many it gives up.
+        After so many, at least 1 and at most 10⁸, it gives up.
     min_height, max_height : float
         As for `astar` [m]. They close voxels, as no-fly zones do, and don't push.
     record : bool
@@ -105,8 +108,9 @@ def potential_field(
     ValueError
         If `city` is no City. If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle or a
         no-fly zone, or above `max_height`. If both lie in one voxel. If `attraction`, `obstacles` or `moves` is
-        unknown. If `pull`, `push`, `reach` or `step` is not above 0. If `max_steps` is below 1. If `min_height` is
-        negative or not finite. If `max_height` is not above `min_height`.
+        unknown. If `pull`, `push`, `reach` or `step` is not above 0. If `max_steps` is below 1 or above 10⁸. If
+        `record` is neither True nor False. If `min_height` is negative or not finite. If `max_height` is not above
+        `min_height`.
 
     See Also
     --------
@@ -131,9 +135,8 @@ def potential_field(
     began = time.perf_counter()
     checks.instance("city", city, City)
     checks.one_of("moves", moves, ("lattice", "continuous"))
-    step = city.cell / 2 if step is None else step
-    checks.positive_number("step", step)
-    checks.whole("max_steps", max_steps, least=1)
+    step = checks.positive_number("step", city.cell / 2 if step is None else step)
+    max_steps, record = checks.whole("max_steps", max_steps, 1, MOST_STEPS), checks.flag("record", record)
     airspace = Airspace(city, 0.0, min_height, max_height)
     ends = endpoints(airspace, start, goal)
     first, last = city.index_of([ends.source, ends.target])
@@ -146,7 +149,7 @@ def potential_field(
         nodes, outcome = walk_lattice(field, first, last, max_steps)
         points = city.center_of(nodes)
     else:
-        points, outcome = walk_freely(field, begin - city.origin, float(step), max_steps)
+        points, outcome = walk_freely(field, begin - city.origin, step, max_steps)
         points = points + city.origin
     info: dict = {"expanded": len(points) - 1}
     if record:
@@ -207,8 +210,8 @@ def potential_forces(
     Raises
     ------
     ValueError
-        If `points` or `goal` haven't three finite coordinates. If `attraction` or `obstacles` is unknown. If `pull`,
-        `push` or `reach` is not above 0.
+        If `city` is no City. If `points` or `goal` haven't three finite coordinates. If `attraction` or `obstacles` is
+        unknown. If `pull`, `push` or `reach` is not above 0.
 
     See Also
     --------
@@ -223,6 +226,7 @@ def potential_forces(
     >>> f"pull {attraction[0]:.2f}, push {repulsion[0]:.2f}"  # eastwards; the wall is 2 m to the east
     'pull 1.00, push -6.87'
     """
+    checks.instance("city", city, City)
     at, aim = checks.vectors(points=points, goal=goal)
     if at.shape[-1] != 3 or aim.shape != (3,):
         raise ValueError(f"points must have shape (..., 3) and goal (3,), got {at.shape} and {aim.shape}")
@@ -237,11 +241,11 @@ def field_of(
     """The arguments, checked."""
     for name, value, known in (("attraction", attraction, ATTRACTIONS), ("obstacles", obstacles, OBSTACLES)):
         checks.one_of(name, value, known)
-    for name, number in (("pull", pull), ("push", push), ("reach", reach)):
-        checks.positive_number(name, number)
+    named = {"pull": pull, "push": push, "reach": reach}
+    pull, push, reach = (checks.positive_number(name, number) for name, number in named.items())
     return Field(
         city.occupied, city.occupied, city.cell, goal - city.origin, attraction == "conic",
-        float(pull), float(push), float(reach), obstacles == "surface",
+        pull, push, reach, obstacles == "surface",
     )  # fmt: skip
 
 
@@ -280,11 +284,10 @@ def repulsion(distance: npt.ArrayLike, push: float, reach: float, *, safe_distan
     >>> repulsion([4, 6], push=5.0, reach=5.0, safe_distance=8.0).round(3)  # as printed: at 6 m it attracts
     array([ 0.016, -0.005])
     """
-    for name, value in (("distance", distance), ("push", push), ("reach", reach)):
-        checks.positive(name, value)
-    end = reach if safe_distance is None else safe_distance
-    checks.positive("safe_distance", end)
-    distances = np.asarray(distance, dtype=float)
+    distances = checks.numbers("distance", distance)
+    checks.positive("distance", distances)
+    push, reach = checks.positive_number("push", push), checks.positive_number("reach", reach)
+    end = reach if safe_distance is None else checks.positive_number("safe_distance", safe_distance)
     return np.where(distances <= end, push * (1 / distances - 1 / reach) / distances**2, 0.0)
 
 

@@ -125,8 +125,8 @@ def repare(
         no-fly zone, nearer to an obstacle than D_min, or above `max_height`. If both lie in one voxel. If `load` is no
         class, negative or too heavy to lift. If `disturbance` is no class, Wind or Weather. If `reading` or `zone` is
         unknown. If `mean_offset` is not two or three finite numbers. If `penalty`, `force_weight` or `load_weight` is
-        negative or not finite. If `interval` is not above 0. If `min_height` is negative or not finite. If `max_height`
-        is not above `min_height`.
+        negative or not finite. If `interval` is not above 0. If `uav` is no UAV. If `as_printed` or `record` is neither
+        True nor False. If `min_height` is negative or not finite. If `max_height` is not above `min_height`.
 
     See Also
     --------
@@ -145,8 +145,12 @@ def repare(
     'grounded: heavy load in heavy disturbance (REPARE Table 3)'
     """
     began = time.perf_counter()
-    checks.positive_number("interval", interval)
-    checks.flag("as_printed", as_printed)
+    as_printed, record = checks.flag("as_printed", as_printed), checks.flag("record", record)
+    interval = checks.positive_number("interval", interval)
+    offset, weights, zone = checked_terms(mean_offset, penalty, force_weight, load_weight, zone)
+    widening = (0.0, 0.0, 0.0) if as_printed else offset
+    if callable(disturbance):
+        checks.function("disturbance", disturbance, "disturbance(time)")
 
     def conditions_at(clock: float) -> Conditions:
         observed = disturbance(clock) if callable(disturbance) else disturbance
@@ -158,22 +162,18 @@ def repare(
     if now.grounded:
         info = {"expanded": 0, "plans": [], "safe_distance": now.safe_distance}
         return timed(Route.none("REPARE", f"grounded: {now.grounded}", **info), began)
-    widening = (0.0, 0.0, 0.0) if as_printed else checks.three("mean_offset", mean_offset)
     for name, point, node in (("start", start, ends.source), ("goal", goal, ends.target)):
         refuse_swallowed(city, name, point, node, now.safe_distance, widening)
 
     def plan(here: npt.ArrayLike, given: Conditions) -> Route:
         source = int(city.code_of(city.cell_of(here)))
         if as_printed:
-            ring = penalty_zone(city, given.safe_distance, penalty=penalty, zone="ring")
+            ring = penalty_zone(city, given.safe_distance, penalty=weights[0], zone="ring")
             return cheapest_route(
                 city, source, ends.target, airspace.blocked, *checked_price(city, ring),
                 heuristic="euclidean", as_printed=True, record=record,
             )  # fmt: skip
-        price = repare_price(
-            city, given, mean_offset=widening, penalty=penalty, force_weight=force_weight, load_weight=load_weight,
-            zone=zone,
-        )  # fmt: skip
+        price = cached_price(city, given, widening, weights, zone)
         return cheapest_route(city, source, ends.target, airspace.blocked, price, cheapest=1.0, record=record)
 
     route = plan(city.center_of(city.index_of(ends.source)), now)
@@ -230,6 +230,8 @@ def refuse_swallowed(
 ) -> None:
     """`ValueError` if a start or goal lies in the zone; it says by how much and which point would do."""
     index = tuple(city.index_of(node))
+    if city.clearance[index] == np.inf:  # there are no obstacles
+        return
     center = city.center_of(index)
     widened = float(city.clearance[index] - city.segment_distance(center, center + mean_offset))
     short = safe_distance + widened - float(city.clearance[index])
@@ -280,7 +282,7 @@ def flight_conditions(
     load, disturbance, uav, reading
         As for `repare`, but no function.
     clock : float
-        Time in flight [s], for messages.
+        Time in flight [s], at least 0, for messages.
 
     Returns
     -------
@@ -290,8 +292,8 @@ def flight_conditions(
     Raises
     ------
     ValueError
-        If `load` is no class, negative or too heavy to lift. If `disturbance` is no class, Wind or Weather. If
-        `reading` is unknown.
+        If `load` is no class, negative or too heavy to lift. If `disturbance` is no class, Wind or Weather. If `uav` is
+        no UAV. If `reading` is unknown. If `clock` is negative or not finite.
 
     See Also
     --------
@@ -309,6 +311,8 @@ def flight_conditions(
     >>> flight_conditions("heavy", "heavy").grounded
     'heavy load in heavy disturbance (REPARE Table 3)'
     """
+    checks.instance("uav", uav, UAV)
+    clock = checks.not_negative_number("clock", clock)
     loaded = uav.loaded(payload_of(load))
     kind, speed = kind_and_speed(disturbance, f"disturbance after {clock:.1f} s" if clock else "disturbance")
     load_name = load if isinstance(load, str) else load_class(load)
@@ -368,8 +372,9 @@ def repare_price(
     Raises
     ------
     ValueError
-        If `penalty`, `force_weight` or `load_weight` is negative or not finite. If `mean_offset` is not two or three
-        finite numbers. If `zone` is unknown.
+        If `city` is no City, or `conditions` are none of `flight_conditions`. If `penalty`, `force_weight` or
+        `load_weight` is negative or not finite. If `mean_offset` is not two or three finite numbers. If `zone` is
+        unknown.
 
     See Also
     --------
@@ -385,9 +390,18 @@ def repare_price(
     >>> price[[9, 8, 7, 6], 30, 30].round(1)  # 0.5, 1.5, 2.5 and 3.5 m from a wall
     array([151.6,   8.2,   5. ,   1. ])
     """
+    checks.instance("city", city, City)
+    checks.instance("conditions", conditions, Conditions)
+    return cached_price(city, conditions, *checked_terms(mean_offset, penalty, force_weight, load_weight, zone))
+
+
+def checked_terms(
+    mean_offset: npt.ArrayLike, penalty: float, force_weight: float, load_weight: float, zone: str
+) -> tuple[tuple[float, ...], tuple[float, ...], str]:
+    """The mean offset μ, the weights ω₀, θ_F and θ_G, and the shape of the zone."""
     named = {"penalty": penalty, "force_weight": force_weight, "load_weight": load_weight}
     weights = tuple(checks.not_negative_number(name, weight) for name, weight in named.items())
-    return cached_price(city, conditions, checks.three("mean_offset", mean_offset), weights, zone)
+    return checks.three("mean_offset", mean_offset), weights, checks.one_of("zone", zone, ("ball", "ring"))
 
 
 @kept_for_city(4)
@@ -401,7 +415,7 @@ def cached_price(
     penalty, force_weight, load_weight = weights
     along = city.clearance_along(mean_offset, at_most=now.safe_distance)
     widened = along < now.safe_distance - 1e-9 * city.cell
-    reach = now.safe_distance + np.where(widened, city.clearance - along, 0.0)
+    reach = now.safe_distance + np.subtract(city.clearance, along, out=np.zeros(city.shape), where=widened)
     near = np.minimum(city.clearance, reach)
     pushed = repulsion(np.maximum(near, city.cell / 2), now.safe_distance**3 / 4, now.safe_distance)
     blown = np.asarray(now.push)

@@ -148,15 +148,15 @@ def checked_limits(
     min_height: float | None,
     max_height: float,
 ) -> Limits:
+    """A planner's arguments as limits; `min_height` is the map's by default."""
     checks.instance("risk_map", risk_map, RiskMap)
-    checks.number("min_clearance", min_clearance)
-    checks.finite("min_clearance", min_clearance)
+    min_clearance = checks.not_negative_number("min_clearance", min_clearance)
+    max_turn, max_pitch = checks.number("max_turn", max_turn), checks.number("max_pitch", max_pitch)
     for name, angle, most in (("max_turn", max_turn, np.pi), ("max_pitch", max_pitch, np.pi / 2)):
-        checks.number(name, angle)
         checks.within(name, angle, 0.0, most + 1e-9, "rad (from degrees: numpy.radians)")
     lowest = risk_map.min_height if min_height is None else min_height
     check_heights(lowest, max_height)
-    return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, lowest, max_height)
+    return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, float(lowest), float(max_height))
 
 
 def checked_length(max_length: float | None) -> float:

@@ -49,7 +49,7 @@ def shortcut(
     route : Route
         With waypoints one or two cells apart the result is best; `route.resample` adds some.
     city : City
-    price : (nx, ny, nz) array or float, optional
+    price : float or (nx, ny, nz) array, optional
         Cost of a metre in each voxel, the one that the route was planned with; a leg costs the integral along it. A
         route that was planned at a price needs one; 1.0 stands for its length alone.
     min_clearance : float, optional
@@ -70,8 +70,9 @@ def shortcut(
     ValueError
         If `route` or `city` is of another kind. If `route` itself doesn't keep `min_clearance`, `min_height`,
         `max_height` or `safe_height` (the message says between which waypoints). If it was planned at a price and
-        `price` is not given. If `price` hasn't the city's shape, is negative or not finite. If `min_clearance`,
-        `min_height` or `safe_height` is negative. If `max_height` is not above `min_height`.
+        `price` is not given. If `price` is one number that is not finite and above 0, or an array that hasn't the
+        city's shape, is negative or not finite. If `min_clearance`, `min_height` or `safe_height` is negative. If
+        `max_height` is not above `min_height`.
 
     See Also
     --------
@@ -90,6 +91,7 @@ def shortcut(
     """
     checks.instance("route", route, Route)
     checks.instance("city", city, City)
+    prices, cheapest = price_or_length(city, price)
     if not route.reached or len(route.points) < 2:
         return route
     if price is None and route.priced:
@@ -97,7 +99,6 @@ def shortcut(
             f"price must be the one that the route was planned with ({route.priced}), or straight lines lead where it "
             "is dear; price=1.0 shortens by length alone"
         )
-    prices, cheapest = (None, 1.0) if price is None or np.ndim(price) == 0 else checked_price(city, price)
     promises = promises_of(
         route, min_clearance=min_clearance, min_height=min_height, max_height=max_height, safe_height=safe_height
     )
@@ -121,6 +122,15 @@ def shortcut(
         cost += part.length if prices is None else part.integral(city, prices)
     priced = "" if prices is None else route.priced or "price"
     return replace(route, points=points, planner=f"{route.planner} + shortcut", cost=cost, priced=priced, **promises)
+
+
+def price_or_length(city: City, price: npt.ArrayLike | None) -> tuple[np.ndarray | None, float]:
+    """A price (nx, ny, nz) and the cheapest; None where the length alone counts, for which one number stands, too."""
+    if price is not None and (values := checks.numbers("price", price)).ndim > 0:
+        return checked_price(city, values)
+    if price is not None:
+        checks.positive("price", values)
+    return None, 1.0
 
 
 def rounds(

@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from inspect import signature
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from uavlab.optimizers import Result, bas, pso, pso_bas
 from uavlab.optimizers.particle_swarm import SWARM
 from uavlab.planners.ant_colony import ANTS, ant_colony
 from uavlab.planners.curves import PER_SEGMENT, Measure, Task, breaches, costs_of, task_of
-from uavlab.planners.question import timed
+from uavlab.planners.question import Ends, timed
 from uavlab.planners.risk_question import (
     MAX_TURN,
     RISK_AHEAD,
@@ -43,7 +44,7 @@ OPTIMIZERS: dict[str, tuple[Callable[..., Result], dict[str, Any]]] = {
 }
 """Each with settings that suit waypoints."""
 
-WAYPOINTS = 7
+WAYPOINTS, MOST_WAYPOINTS = 7, 10**4
 
 ARCS = 200
 """Random arcs to begin with, of which the best make the first swarm."""
@@ -110,7 +111,7 @@ def waypoint_swarm(
         Those of `uavlab.optimizers`; "pso_aco" is PSO with a particle on the best route of an ant colony, which takes
         a quarter of the budget.
     waypoints : int
-        Free points K between start and goal, at least 1.
+        Free points K between start and goal, from 1 to 10,000.
     encoding : {"points", "planes"}
         What a waypoint is free to do: three numbers, anywhere on the map; or two, sideways and up on one of K vertical
         planes across the way.
@@ -146,8 +147,11 @@ def waypoint_swarm(
         If `risk_map`, `start`, `goal`, `risk_weight`, `length_weight`, `threat_weight`, `max_turn`, `max_pitch`,
         `max_length`, `min_clearance`, `min_height` or `max_height` is what `least_risk` refuses. If `rng` is no
         generator and no seed. If `budget` doesn't cover arcs, one swarm and refinement. If `optimizer`, `encoding` or
-        `curve` is unknown. If `waypoints` is below 1, or `arcs` below 0. If `initial` doesn't lead from start to goal.
-        If `refinement` is not from 0 to below 1.
+        `curve` is unknown. If `waypoints` is below 1 or above 10,000, or `arcs` below 0. If `initial` is no Route, or
+        doesn't lead from start to goal. If `refinement` is not from 0 to below 1. If a setting is out of the
+        optimiser's range.
+    TypeError
+        If the optimiser doesn't take one of `settings`.
 
     See Also
     --------
@@ -171,9 +175,9 @@ def waypoint_swarm(
     checks.one_of("optimizer", optimizer, OPTIMIZERS)
     checks.one_of("encoding", encoding, ("points", "planes"))
     checks.one_of("curve", curve, ("spline", "polyline"))
-    for name, count, least in (("waypoints", waypoints, 1), ("arcs", arcs, 0), ("budget", budget, 1)):
-        checks.whole(name, count, least)
-    check_refinement(refinement)
+    swarm = checked_swarm(optimizer, settings)
+    waypoints, arcs = checks.whole("waypoints", waypoints, 1, MOST_WAYPOINTS), checks.whole("arcs", arcs, 0)
+    budget, refinement = checks.whole("budget", budget, 1), checked_refinement(refinement)
     if initial is not None:
         checks.instance("initial", initial, Route)
     limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
@@ -183,7 +187,6 @@ def waypoint_swarm(
     ends = flyable_endpoints(risk_map, start, goal, limits)
     task = task_of(risk_map, ends, price, weights, limits, curve == "spline", longest)
     space = space_of(task, waypoints, encoding)
-    swarm = 1 if optimizer == "bas" else settings.get("swarm", SWARM)
     ants, left, last = shares(budget, optimizer, arcs, refinement, swarm)
     measure = Measure(task)
     if ants:
@@ -194,7 +197,7 @@ def waypoint_swarm(
         )  # fmt: skip
         measure.note(walked.info["history"], walked.info["iterations"])
         initial = walked if walked.reached else initial
-    begin = None if initial is None else near(task, initial.en_route, risk_map, waypoints)
+    begin = None if initial is None else near(task, initial.en_route, risk_map, waypoints, "initial")
     first = first_vectors(measure, space, arcs, begin, rng)
     found = searched(measure, space, optimizer, first[:swarm], left, rng, settings)
     if last:
@@ -215,6 +218,25 @@ def waypoint_swarm(
         reason = f"the best of {measure.made} curves from {checks.show(start)} to {checks.show(goal)} {route.reason}"
         return Route.none(route.planner, reason, **info)
     return replace(route, info=info)
+
+
+def checked_swarm(optimizer: str, settings: dict[str, Any]) -> int:
+    """How many particles the settings ask for; a setting that the optimiser doesn't take is refused."""
+    search, _ = OPTIMIZERS[optimizer]
+    own, taken = (named_only(function) for function in (waypoint_swarm, search))
+    for name in settings:
+        if name not in taken:
+            raise TypeError(
+                f"waypoint_swarm has no argument {name!r}; it takes {', '.join(own)}, and for optimizer={optimizer!r} "
+                + ", ".join(setting for setting in taken if setting != "start")
+            )
+    return checks.whole("swarm", settings.get("swarm", SWARM if "swarm" in taken else 1), least=1)
+
+
+def named_only(function: Callable[..., Any]) -> list[str]:
+    """Names of the arguments that are given by name only."""
+    parameters = signature(function).parameters.values()
+    return [parameter.name for parameter in parameters if parameter.kind is parameter.KEYWORD_ONLY]
 
 
 def searched(
@@ -282,9 +304,10 @@ def refine(
     Raises
     ------
     ValueError
-        If `route` doesn't arrive. If its ends, `risk_weight`, `length_weight`, `threat_weight`, `max_turn`,
-        `max_pitch`, `max_length`, `min_clearance`, `min_height` or `max_height` are what `least_risk` refuses. If `rng`
-        is no generator and no seed. If `budget` is below 4.
+        If `route` is no Route, doesn't arrive, or takes off or lands to another `min_height`. If `risk_map` is no
+        RiskMap. If the route's ends, `risk_weight`, `length_weight`, `threat_weight`, `max_turn`, `max_pitch`,
+        `max_length`, `min_clearance`, `min_height` or `max_height` are what `least_risk` refuses. If `rng` is no
+        generator and no seed. If `budget` is below 4.
 
     See Also
     --------
@@ -304,9 +327,10 @@ def refine(
     began = time.perf_counter()
     rng = checks.generator("rng", rng)
     checks.instance("route", route, Route)
+    checks.instance("risk_map", risk_map, RiskMap)
     if not route.reached or len(route.points) < 2:
         raise ValueError(f"route must lead from a start to a goal, it doesn't: {route.reason or 'no leg'}")
-    checks.whole("budget", budget, least=4)
+    budget = checks.whole("budget", budget, least=4)
     kept = promises_of(route, min_clearance=min_clearance, min_height=min_height, max_height=max_height)
     if min_height is None:
         kept["min_height"] = max(kept["min_height"], risk_map.min_height)
@@ -318,10 +342,11 @@ def refine(
     weights = Weights.checked(risk_weight, length_weight, threat_weight, drift)
     price = price_per_cell(risk_map, weights)
     ends = flyable_endpoints(risk_map, route.points[0], route.points[-1], limits)
+    refuse_other_heights(route, ends)
     task = task_of(risk_map, ends, price, weights, limits, True, longest)
     measure, route = Measure(task), route.en_route
     count = max(int(route.length / risk_map.city.cell / SPACING), 2) + 1
-    one_by_one(measure, near(task, route, risk_map, count - 2), PER_SEGMENT // 2, budget, rng)
+    one_by_one(measure, near(task, route, risk_map, count - 2, "route"), PER_SEGMENT // 2, budget, rng)
     better = route_of(measure, risk_map, f"{route.planner} + refined")
     cost = cost_of(task, route, risk_map)
     history = np.minimum(measure.history, cost)
@@ -332,10 +357,20 @@ def refine(
     return timed(finished(route, ends, price, weights, longest), began)
 
 
-def check_refinement(refinement: float) -> None:
-    checks.number("refinement", refinement)
-    if not 0 <= refinement < 1:
+def refuse_other_heights(route: Route, ends: Ends) -> None:
+    """`ValueError` if a route takes off or lands to another height than the one that is asked for."""
+    if (len(ends.takeoff), len(ends.landing)) != (route.takeoff, route.landing):
+        raise ValueError(
+            f"route must begin and end, but for take-off and landing, at min_height={ends.airspace.min_height:g} m "
+            f"above ground: plan it with that, or give the min_height that it was planned with, {route.min_height:g} m"
+        )
+
+
+def checked_refinement(refinement: float) -> float:
+    share = checks.number("refinement", refinement)
+    if not 0 <= share < 1:
         raise ValueError(f"refinement must be a share of the budget, from 0 to below 1, got {refinement!r}")
+    return share
 
 
 class Encoding(NamedTuple):
@@ -429,11 +464,11 @@ def arcs_between(task: Task, waypoints: int, count: int, rng: np.random.Generato
     return np.clip(curves, 0.0, np.array(task.sky.closed.shape) - 1e-9)
 
 
-def near(task: Task, route: Route, risk_map: RiskMap, waypoints: int) -> np.ndarray:
+def near(task: Task, route: Route, risk_map: RiskMap, waypoints: int, name: str) -> np.ndarray:
     """Points with both ends (K + 2, 3) of a curve near a route, from the task's start to its goal."""
     points = (route.points - risk_map.city.origin) / risk_map.city.cell
     if len(points) < 2 or np.abs(points[[0, -1]] - (task.source, task.target)).max() > 0.5 + 1e-9:
-        raise ValueError(f"initial must lead from start to goal, within a voxel of both, got {route!r}")
+        raise ValueError(f"{name} must lead from start to goal, within a voxel of both, got {route!r}")
     control = task.nearest(points, waypoints + 2)
     control[0], control[-1] = task.source, task.target
     return control

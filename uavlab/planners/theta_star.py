@@ -96,7 +96,7 @@ def theta_star(
     ------
     ValueError
         If `city`, `start`, `goal`, `price`, `min_clearance`, `min_height` or `max_height` is what `astar` refuses. If
-        `weight` is below 1 or not finite.
+        `weight` is below 1 or not finite. If `taut` is neither True nor False.
 
     See Also
     --------
@@ -118,8 +118,8 @@ def theta_star(
     <Route by A* + shortcut: 135.5 m, 5 waypoints>
     """
     began = time.perf_counter()
-    checks.at_least_one("weight", weight)
-    checks.number("weight", weight)
+    checks.at_least_one("weight", weight := checks.number("weight", weight))
+    taut = checks.flag("taut", taut)
     airspace = Airspace(city, min_clearance, min_height, max_height)
     ends = endpoints(airspace, start, goal)
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
@@ -131,7 +131,7 @@ def theta_star(
         sparse_array(np.zeros, count, np.uint8),
     )  # fmt: skip
     bounds = bounds_of(city, **airspace.promises)
-    query = Query(airspace.blocked, bounds, cheapest, float(weight), ends.source, ends.target)
+    query = Query(airspace.blocked, bounds, cheapest, weight, ends.source, ends.target)
     expanded = search(query, prices, tree, open_list(count))
     info = {"expanded": expanded}
     if tree.state[ends.target] == UNSEEN:

@@ -16,6 +16,9 @@ FACTORS = np.array([[1, 1, 1, 1], [3, 2, 1, 0], [6, 2, 0, 0]])
 
 ENDS = ("phantom", "clamped", "none")
 
+MOST_PER_SEGMENT, MOST_FITTED = 10**6, 10**4
+"""Points on a segment, control points of a fit: more take all of the memory."""
+
 
 def cubic_bspline(
     control: npt.ArrayLike, per_segment: int = 8, *, ends: str = "phantom", derivative: int = 0
@@ -30,7 +33,7 @@ def cubic_bspline(
     control : (..., N, D) array
         Control points; several curves at once if there are more axes.
     per_segment : int
-        Points on each segment.
+        Points on each segment, at most a million.
     ends : {"phantom", "clamped", "none"}
         "phantom": a point 2P_0 − P_1 before the first, and likewise after the last; the curve passes through both,
         unbent; N ≥ 2, N − 1 segments. "clamped": each end stands three times; the curve passes through both, its
@@ -47,7 +50,7 @@ def cubic_bspline(
     ------
     ValueError
         If `control` has too few points for `ends`, another shape than (..., N, D), or a value that is not finite. If
-        `per_segment` is below 1. If `ends` is unknown. If `derivative` is not 0, 1 or 2.
+        `per_segment` is below 1 or above a million. If `ends` is unknown. If `derivative` is not 0, 1 or 2.
 
     See Also
     --------
@@ -67,9 +70,9 @@ def cubic_bspline(
            [20.  , 20.  ]])
     """
     points = checks.numbers("control", control)
-    checks.whole("per_segment", per_segment, least=1)
+    per_segment = checks.whole("per_segment", per_segment, 1, MOST_PER_SEGMENT)
     checks.one_of("ends", ends, ENDS)
-    checked_derivative(derivative)
+    derivative = checked_derivative(derivative)
     checked_count(points, ends)
     checks.finite("control", points)
     padded = with_ends(points, ends)
@@ -85,9 +88,10 @@ def cubic_bspline(
     return np.concatenate([curve, last], axis=-2)
 
 
-def checked_derivative(derivative: int) -> None:
-    if not isinstance(derivative, int | np.integer) or derivative not in (0, 1, 2):
+def checked_derivative(derivative: int) -> int:
+    if isinstance(derivative, bool) or not isinstance(derivative, int | np.integer) or derivative not in (0, 1, 2):
         raise ValueError(f"derivative must be 0, 1 or 2, got {derivative!r}")
+    return int(derivative)
 
 
 def checked_count(points: np.ndarray, ends: str) -> None:
@@ -118,7 +122,7 @@ def basis_functions(t: npt.ArrayLike, knots: npt.ArrayLike, degree: int = 3, *, 
 
     Parameters
     ----------
-    t : (T,) array
+    t : float or (T,) array
         Parameters, within the knots.
     knots : (K,) array
         Not falling; K − degree − 1 basis functions.
@@ -136,8 +140,8 @@ def basis_functions(t: npt.ArrayLike, knots: npt.ArrayLike, degree: int = 3, *, 
     Raises
     ------
     ValueError
-        If `knots` fall, are all equal, not finite or fewer than degree + 2. If `t` lies beyond the knots. If `degree`
-        is negative.
+        If `knots` fall, are all equal, not finite or fewer than degree + 2. If `t` lies beyond the knots, or has more
+        than one axis. If `degree` is negative. If `as_printed` is neither True nor False.
 
     See Also
     --------
@@ -159,17 +163,17 @@ def basis_functions(t: npt.ArrayLike, knots: npt.ArrayLike, degree: int = 3, *, 
     >>> weights.sum(axis=1).round(3)
     array([1., 1.])
     """
-    t, knots = checks.numbers("t", t), checks.numbers("knots", knots)
-    checks.whole("degree", degree, least=0)
+    t, knots = np.atleast_1d(checks.numbers("t", t)), checks.numbers("knots", knots)
+    degree, as_printed = checks.whole("degree", degree, least=0), checks.flag("as_printed", as_printed)
     checks.finite("knots", knots)
     if knots.ndim != 1 or len(knots) < degree + 2 or (np.diff(knots) < 0).any() or knots[0] == knots[-1]:
         raise ValueError(
             f"knots must be at least {degree + 2} numbers that rise, some of them may be equal; got {knots!r:.80}"
         )
     checks.within("t", t, knots[0], knots[-1], "(the knots)")
-    t = np.atleast_1d(t)[:, None]
+    t = checks.array("t", t, None)[:, None]
     low, high = knots[:-1], knots[1:]
-    inside = (t >= low) & (t <= high) if checks.flag("as_printed", as_printed) else (t >= low) & (t < high)
+    inside = (t >= low) & (t <= high) if as_printed else (t >= low) & (t < high)
     if not as_printed:
         last = np.flatnonzero(high > low)[-1]
         inside[:, last] |= t[:, 0] == high[last]
@@ -193,10 +197,10 @@ def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.nda
     ----------
     control : (N, D) array
         N > degree.
-    t : (T,) array
+    t : float or (T,) array
         From 0 to 1.
     degree : int
-        1 is the polyline.
+        At least 1, the polyline.
 
     Returns
     -------
@@ -206,7 +210,7 @@ def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.nda
     ------
     ValueError
         If `control` has not more than `degree` points, another shape than (N, D), or a value that is not finite. If `t`
-        is not from 0 to 1. If `degree` is below 1.
+        is not from 0 to 1, or has more than one axis. If `degree` is below 1.
 
     See Also
     --------
@@ -227,7 +231,7 @@ def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.nda
            [30., 10.]])
     """
     points = checks.numbers("control", control)
-    checks.whole("degree", degree, least=1)
+    degree = checks.whole("degree", degree, least=1)
     checks.finite("control", points)
     if points.ndim != 2 or len(points) <= degree:
         raise ValueError(f"control must be more than {degree} points of shape (N, D), got shape {points.shape}")
@@ -236,7 +240,7 @@ def bspline(control: npt.ArrayLike, t: npt.ArrayLike, degree: int = 3) -> np.nda
     return basis_functions(t, knots, degree) @ points
 
 
-def subdivided(control: np.ndarray) -> np.ndarray:
+def subdivided(control: npt.ArrayLike) -> np.ndarray:
     """Control points of the same curve, twice as dense, by Lane and Riesenfeld's rule.
 
     Q_2i = (P_i−1 + 6 P_i + P_i+1)/8, Q_2i+1 = (P_i + P_i+1)/2; the ends stay.
@@ -249,6 +253,11 @@ def subdivided(control: np.ndarray) -> np.ndarray:
     Returns
     -------
     (2N − 1, D) array
+
+    Raises
+    ------
+    ValueError
+        If `control` has fewer than two points, another shape than (N, D), or a value that is not finite.
 
     See Also
     --------
@@ -269,7 +278,8 @@ def subdivided(control: np.ndarray) -> np.ndarray:
     >>> np.allclose(cubic_bspline(finer, per_segment=4), cubic_bspline(control, per_segment=8))
     True
     """
-    control = np.asarray(control, dtype=float)
+    control = checks.array("control", control, None, None)
+    checked_count(control, "phantom")
     finer = np.empty((2 * len(control) - 1, control.shape[1]))
     finer[0::2] = control
     finer[2:-1:2] = (control[:-2] + 6 * control[1:-1] + control[2:]) / 8
@@ -277,7 +287,7 @@ def subdivided(control: np.ndarray) -> np.ndarray:
     return finer
 
 
-def fitted(points: np.ndarray, count: int) -> np.ndarray:
+def fitted(points: npt.ArrayLike, count: int) -> np.ndarray:
     """Control points of the B-spline nearest to a line of points, by least squares; the ends stay.
 
     min Σ |S(t_j) − p_j|² over the inner control points, the p_j at even distances along the line.
@@ -287,12 +297,18 @@ def fitted(points: np.ndarray, count: int) -> np.ndarray:
     points : (M, D) array
         Joined by straight lines; M ≥ 2.
     count : int
-        How many control points, at least 3.
+        How many control points, from 2 to 10,000.
 
     Returns
     -------
     (count, D) array
         For ends="phantom".
+
+    Raises
+    ------
+    ValueError
+        If `points` are fewer than two, have another shape than (M, D), or a value that is not finite. If `count` is
+        below 2 or above 10,000.
 
     See Also
     --------
@@ -309,7 +325,9 @@ def fitted(points: np.ndarray, count: int) -> np.ndarray:
     >>> bool(np.abs(off).max() < 2)  # nine points for half a circle of 100 m
     True
     """
-    points = np.asarray(points, dtype=float)
+    points, count = checks.array("points", points, None, None), checks.whole("count", count, 2, MOST_FITTED)
+    if len(points) < 2:
+        raise ValueError(f"points must be at least 2, joined by a line, got {len(points)}")
     wanted = spread(points, 8 * (count - 1) + 1)
     basis = cubic_bspline(np.eye(count), per_segment=8)
     rest = wanted - basis[:, [0, -1]] @ points[[0, -1]]

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.route import Route, check_promises, promises_of
+from uavlab.route import PROMISES, Route, check_promises, promises_of
 from uavlab.spline.basis import BASIS, FACTORS, POWERS, checked_count, checked_derivative, with_ends
 from uavlab.vehicle import GRAVITY
 
@@ -26,6 +26,9 @@ BANK = np.radians(30.0)
 
 UNRESOLVED = 0.5
 """A change of direction between two points [rad] in which the curvature of neither may be the greatest."""
+
+MOST_POINTS = 10**7
+"""At which a curve may be measured; more take all of the memory."""
 
 CONTACT = 0.02
 """Share of its radius by which a body may overlap an obstacle before that is contact; half of it for the route."""
@@ -108,15 +111,27 @@ def allowed_speed(curvature: npt.ArrayLike, bank: float = BANK) -> np.ndarray:
     """
     values = checks.numbers("curvature", curvature)
     checks.refuse(values, values >= 0, "curvature must be at least 0")
-    checked_bank(bank)
+    bank = checked_bank(bank)
     with np.errstate(divide="ignore"):
         return np.sqrt(GRAVITY * np.tan(bank) / values)
 
 
 def checked_bank(bank: float) -> float:
-    checks.number("bank", bank)
+    bank = checks.number("bank", bank)
     checks.within("bank", bank, 1e-6, np.pi / 2 - 1e-6, "rad (from degrees: numpy.radians)")
     return bank
+
+
+def checked_step(step: float, control: np.ndarray) -> float:
+    """The step of a curve with these control points; it is refused if it leaves too many points."""
+    step = checks.positive_number("step", step)
+    length = float(np.linalg.norm(np.diff(control, axis=0), axis=1).sum())
+    if length > MOST_POINTS * step:
+        raise ValueError(
+            f"step must be at least {length / MOST_POINTS:.1g} m, or a curve of {length:.0f} m would have more than "
+            f"{MOST_POINTS:,} points, got {step:g}"
+        )
+    return step
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,8 +161,10 @@ class Curve:
     ------
     ValueError
         If `control` hasn't shape (N, 3), has fewer than two points or a value that is not finite. If `ends` is unknown.
-        If `step` is not above 0. If `min_clearance`, `min_height` or `safe_height` is negative or not finite. If
-        `max_height` is not above `min_height`.
+        If `step` is not above 0, or so small that there would be more than ten million points. If `planner` is no text,
+        or `info` no mapping. If `takeoff` or `landing` is negative, or both together leave no segment. If
+        `min_clearance`, `min_height` or `safe_height` is negative or not finite. If `max_height` is not above
+        `min_height`.
 
     See Also
     --------
@@ -178,14 +195,23 @@ class Curve:
     safe_height: float = 0.0
 
     def __post_init__(self) -> None:
-        check_promises(self)
+        promises = {name: checks.number(name, getattr(self, name)) for name in PROMISES}
         control = checks.numbers("control", self.control).copy()
-        checked_count(control, checks.one_of("ends", self.ends, ("phantom", "clamped")))
-        if control.ndim != 2 or control.shape[1] != 3:
-            raise ValueError(f"control must have shape (N, 3), got {control.shape}")
-        checks.finite("control", control)
-        checks.positive_number("step", self.step)
-        object.__setattr__(self, "control", control)
+        ends = checks.one_of("ends", self.ends, ("phantom", "clamped"))
+        checked_count(control, ends)
+        control = checks.array("control", control, None, 3)
+        step = checked_step(self.step, control)
+        takeoff, landing = (checks.whole(name, getattr(self, name), 0) for name in ("takeoff", "landing"))
+        if takeoff + landing > len(control) - 2:
+            raise ValueError(
+                f"takeoff and landing must leave a segment between {len(control)} control points, "
+                f"got {takeoff} and {landing}"
+            )
+        planner, info = checks.text("planner", self.planner), checks.by_name("info", self.info, least=0)
+        checked = {"control": control, "ends": ends, "step": step, "planner": planner, "info": info, **promises}
+        for name, value in {**checked, "takeoff": takeoff, "landing": landing}.items():
+            object.__setattr__(self, name, value)
+        check_promises(self)
 
     def __repr__(self) -> str:
         return f"<Curve by {self.planner}: {self.length:.1f} m, {len(self.control)} control points>"
@@ -243,7 +269,7 @@ class Curve:
         """
         padded = with_ends(self.control, self.ends)
         where = checks.numbers("parameter", parameter)
-        checked_derivative(derivative)
+        derivative = checked_derivative(derivative)
         checks.within("parameter", where, 0.0, len(padded) - 3, "(segments)")
         segment = np.minimum(where.astype(int), len(padded) - 4)
         weights = FACTORS[derivative] * (where - segment)[..., None] ** POWERS[derivative] @ BASIS
@@ -367,7 +393,7 @@ class Curve:
         Raises
         ------
         ValueError
-            If `city` is no City, or `at_most` is negative.
+            If `city` is no City, or `at_most` is no number or negative.
 
         See Also
         --------
@@ -383,6 +409,7 @@ class Curve:
         (True, 10.0)
         """
         checks.instance("city", city, City)
+        at_most = checks.number("at_most", at_most)
         straight = city.segment_distance(self.points[:-1], self.points[1:], at_most=at_most)
         return np.maximum(straight - self.sagitta, 0.0)
 

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.bounds import slack_of
+from uavlab.city.extent import check_heights
 from uavlab.route import promises_of
 from uavlab.spline.curve import BANK, CONTACT, Curve, checked_bank, curvature
 from uavlab.vehicle import GRAVITY, UAV
@@ -135,7 +136,7 @@ class Feasibility:
                 limit.name,
                 f"{'>=' if limit.at_least else '<='} {limit.limit:.3g} {limit.unit}",
                 f"{limit.worst:.3g} {limit.unit}",
-                f"{limit.distance:.1f} m, {checks.show(np.round(limit.place, 1))}",
+                f"{limit.distance:.1f} m, {checks.show(np.round(limit.place, 1) + 0.0)}",
                 "yes" if limit.met else "NO",
             )
             for limit in self.limits
@@ -249,33 +250,31 @@ def feasibility(
     checks.instance("curve", curve, Curve)
     checks.instance("uav", uav, UAV)
     checks.instance("city", city, City)
-    checks.flag("as_printed", as_printed)
-    whole, curve = curve, curve.en_route
-    begins = float(whole.distance[np.searchsorted(whole.parameter, whole.takeoff)])
-    speed = uav.cruise_speed if speed is None else speed
-    checks.positive_number("speed", speed)
-    pitch = np.degrees(np.abs(curve.pitch))
-    checks.positive_number("max_pitch", max_pitch)
-    checks.within("max_pitch", max_pitch, 0.0, np.pi / 2, "rad (from degrees: numpy.radians)")
+    speed = checks.positive_number("speed", uav.cruise_speed if speed is None else speed)
+    wind, bank = checks.three("wind", wind), checked_bank(bank)
+    max_pitch = checked_angle("max_pitch", max_pitch, np.pi / 2)
     checks.one_of("reading", reading, ("plan", "space"))
-    turned = limits_of_turn(curve, city, MAX_TURN if max_turn is None and as_printed else max_turn)
-    steepest = upper(curve, "pitch", "°", np.degrees(max_pitch), pitch)
+    whole, curve = curve, curve.en_route
+    heights = checked_heights(curve, min_height, max_height, safe_height)
+    least = max((1 - CONTACT) * uav.diameter / 2, curve.min_clearance - slack_of(city) * city.cell)
+    least = checks.not_negative_number("min_clearance", least if min_clearance is None else min_clearance)
+    begins = float(whole.distance[np.searchsorted(whole.parameter, whole.takeoff)])
+    if checks.flag("as_printed", as_printed) and max_turn is None:
+        max_turn = MAX_TURN
+    turned = limits_of_turn(curve, city, max_turn)
+    steepest = upper(curve, "pitch", "°", np.degrees(max_pitch), np.degrees(np.abs(curve.pitch)))
     if as_printed:
         bends = plan_curvature(curve) if reading == "plan" else curve.curvature
         per_voxel = upper(curve, f"curvature in {reading}", "per voxel", 1.0, bends * city.cell)
         return feasibility_after(begins, (per_voxel, *turned, steepest), speed)
-    sharpest = GRAVITY * np.tan(checked_bank(bank)) / speed**2
+    sharpest = GRAVITY * np.tan(bank) / speed**2
     thrust, tilt = tilted_thrust(curve, uav, speed, wind)
-    air_speed = np.linalg.norm(speed * curve.tangent - checks.three("wind", wind), axis=1)
-    promised = max((1 - CONTACT) * uav.diameter / 2, curve.min_clearance - slack_of(city) * city.cell)
-    least = promised if min_clearance is None else min_clearance
-    checks.not_negative_number("min_clearance", least)
-    heights = promises_of(curve, min_height=min_height, max_height=max_height, safe_height=safe_height)
+    air_speed = np.linalg.norm(speed * curve.tangent - wind, axis=1)
     return feasibility_after(
         begins,
         (
             lower(curve, "clearance", "m", least, curve.least_distances(city)),
-            *limits_of_place(curve, city, heights["min_height"], heights["max_height"], heights["safe_height"]),
+            *limits_of_place(curve, city, *heights),
             upper(curve, "curvature", "1/m", sharpest, curve.level_curvature),
             *turned,
             steepest,
@@ -284,16 +283,31 @@ def feasibility(
             upper(curve, "air speed", "m/s", uav.top_speed, air_speed),
             *limits_of_climb(curve, uav, speed),
         ),
-        float(speed),
+        speed,
     )
+
+
+def checked_angle(name: str, angle: float, most: float) -> float:
+    """A limit on an angle [rad], above 0."""
+    angle = checks.positive_number(name, angle)
+    checks.within(name, angle, 0.0, most, "rad (from degrees: numpy.radians)")
+    return angle
+
+
+def checked_heights(
+    curve: Curve, min_height: float | None, max_height: float | None, safe_height: float | None
+) -> tuple[float, float, float]:
+    """`min_height`, `max_height` and `safe_height`, by default what the curve promises."""
+    asked = promises_of(curve, min_height=min_height, max_height=max_height, safe_height=safe_height)
+    check_heights(asked["min_height"], asked["max_height"])
+    safe_height = checks.not_negative_number("safe_height", asked["safe_height"])
+    return asked["min_height"], asked["max_height"], safe_height
 
 
 def limits_of_place(
     curve: Curve, city: City, min_height: float, max_height: float, safe_height: float
 ) -> tuple[Limit, ...]:
     """The map's box, heights above ground and roofs, no-fly zones: where a UAV may be."""
-    city.blocked(min_height=min_height, max_height=max_height)  # refuses what is out of range
-    checks.not_negative_number("safe_height", safe_height)
     fine = curve if curve.step <= city.cell else replace(curve, step=city.cell)
     low, high = city.bounds
     ends = np.minimum(fine.points - low, high - fine.points).min(axis=1)
@@ -318,8 +332,7 @@ def limits_of_turn(curve: Curve, city: City, max_turn: float | None) -> tuple[Li
     """Of the heading over a voxel's length, if there is one."""
     if max_turn is None:
         return ()
-    checks.positive_number("max_turn", max_turn)
-    checks.within("max_turn", max_turn, 0.0, np.pi, "rad (from degrees: numpy.radians)")
+    max_turn = checked_angle("max_turn", max_turn, np.pi)
     return (upper(curve, "heading change", "° per voxel", np.degrees(max_turn), heading_change(curve, city.cell)),)
 
 
@@ -376,7 +389,7 @@ def feasibility_after(begins: float, limits: tuple[Limit, ...], speed: float) ->
 
 def upper(curve: Curve, name: str, unit: str, limit: float, values: np.ndarray) -> Limit:
     """An upper limit and where the values (P,) at the curve's points are worst."""
-    worst = float(values.max())
+    worst = float(values.max()) + 0.0  # −0 is 0
     slack = 1e-9 * abs(worst) if np.isfinite(worst) else 0.0
     first = int(np.flatnonzero(values >= worst - slack)[0])  # of equals, whatever the rounding
     return Limit(name, unit, float(limit), worst, False, *whereabouts(curve, first))
@@ -384,7 +397,7 @@ def upper(curve: Curve, name: str, unit: str, limit: float, values: np.ndarray) 
 
 def lower(curve: Curve, name: str, unit: str, limit: float, values: np.ndarray) -> Limit:
     """A lower limit and where the values (P − 1,) between the curve's points are worst."""
-    least = float(values.min())
+    least = float(values.min()) + 0.0
     slack = 1e-9 * abs(least) if np.isfinite(least) else 0.0
     nearest = int(np.flatnonzero(values <= least + slack)[0])
     return Limit(name, unit, float(limit), least, True, *whereabouts(curve, nearest))
@@ -420,7 +433,7 @@ def tilted_thrust(
     Raises
     ------
     ValueError
-        If `speed` is not above 0, or `wind` is not two or three finite numbers.
+        If `curve` or `uav` is of another kind, `speed` is not above 0, or `wind` is not two or three finite numbers.
 
     See Also
     --------
@@ -437,7 +450,9 @@ def tilted_thrust(
     >>> f"{thrust.max():.1f} N, {np.degrees(tilt.max()):.0f}°; weight {LIGHT_QUADROTOR.weight:.1f} N"
     '15.2 N, 15°; weight 14.7 N'
     """
-    checks.positive_number("speed", speed)
+    checks.instance("curve", curve, Curve)
+    checks.instance("uav", uav, UAV)
+    speed = checks.positive_number("speed", speed)
     drag = wind_drag(checks.three("wind", wind), speed * curve.tangent, uav.drag_area)
     force = uav.weight / GRAVITY * speed**2 * curve.bend - drag + [0.0, 0.0, uav.weight]
     tilt = np.arctan2(np.hypot(force[:, 0], force[:, 1]), force[:, 2])
@@ -492,7 +507,7 @@ def greatest_speed(curve: Curve, uav: UAV, wind: npt.ArrayLike = (0.0, 0.0, 0.0)
     checks.instance("curve", curve, Curve)
     checks.instance("uav", uav, UAV)
     curve, wind = curve.en_route, np.array(checks.three("wind", wind))
-    checked_bank(bank)
+    bank = checked_bank(bank)
     along = curve.tangent @ wind
     across = np.maximum((wind**2).sum() - along**2, 0.0)
     if (across > uav.top_speed**2).any():
