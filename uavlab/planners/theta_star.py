@@ -172,10 +172,9 @@ def search(query, price, tree, waiting):
     blocked, cheapest, weight = query.blocked, query.cheapest, query.weight
     g, parent, bound, guess, state = tree
     ny, nz = blocked.shape[1], blocked.shape[2]
-    steps = steps_of(blocked)
     here, there, aim = np.empty(3), np.empty(3), np.empty(3)
     put_centre(aim, query.goal, ny, nz)
-    expanded = 0
+    steps, expanded = steps_of(blocked), 0
     g[query.start], parent[query.start], state[query.start] = 0.0, query.start, OPEN
     push(waiting, query.start, 0.0)
     while waiting.size[0] > 0:
