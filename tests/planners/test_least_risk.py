@@ -577,6 +577,8 @@ def test_weights_and_lengths_out_of_range_are_refused(options, message):
         (1, "lengths must be a whole number of at least 2, got 1"),
         (0, "lengths must be a whole number of at least 2, got 0"),
         ([], "lengths is empty"),
+        (10**5, "lengths must be at most 10,000"),
+        ([[20.0, 30.0]], r"lengths must have shape \(N,\), got \(1, 2\)"),
         ([20.0, 0.0], "lengths must be finite and above 0, got 0"),
         ([20.0, np.nan], "lengths must be finite and above 0, got nan"),
         (-5.0, "lengths must be finite and above 0, got -5"),

@@ -181,8 +181,8 @@ def pareto_front(
     ------
     ValueError
         If `risk_map`, `start`, `goal`, `max_turn`, `max_pitch`, `min_clearance`, `min_height` or `max_height` is what
-        `least_risk` refuses, or `drift` neither True nor False. If `lengths` is empty, as a count below 2 or above
-        10,000, or a length is not finite and above 0.
+        `least_risk` refuses, or `drift` neither True nor False. If `lengths` is empty, has more than one axis, is as a
+        count below 2 or above 10,000, or a length is not finite and above 0.
 
     See Also
     --------
@@ -208,10 +208,10 @@ def pareto_front(
     count = None
     if isinstance(lengths, int | np.integer):
         count = checks.whole("lengths", int(lengths), 2, MOST_LENGTHS)
-    elif (asked := checks.numbers("lengths", lengths).ravel()).size == 0:
+    elif (asked := np.atleast_1d(checks.numbers("lengths", lengths))).size == 0:
         raise ValueError("lengths is empty: give how many, or at least one length [m]")
     else:
-        checks.positive("lengths", asked)
+        checks.positive("lengths", checks.array("lengths", asked, None, finite=False))
     ends = flyable_endpoints(risk_map, start, goal, limits)
     weights = Weights(drift=checks.flag("drift", drift))
     price = price_per_cell(risk_map, weights)

@@ -231,7 +231,7 @@ def potential_forces(
     if at.shape[-1] != 3 or aim.shape != (3,):
         raise ValueError(f"points must have shape (..., 3) and goal (3,), got {at.shape} and {aim.shape}")
     field = field_of(city, aim, attraction, obstacles, pull, push, reach)
-    pulls, pushes, potentials = forces_at(field, at.reshape(-1, 3) - city.origin)
+    pulls, pushes, potentials = forces_at(field, np.ascontiguousarray(at.reshape(-1, 3) - city.origin))
     return pulls.reshape(at.shape), pushes.reshape(at.shape), potentials.reshape(at.shape[:-1])
 
 
