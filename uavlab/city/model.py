@@ -453,7 +453,7 @@ class City:
         (33.34, 35.0)
         """
         points = checks.array("points", points, ..., 3)
-        cells = (points.reshape(-1, 3) - self.origin) / self.cell
+        cells = np.ascontiguousarray((points.reshape(-1, 3) - self.origin) / self.cell)
         within = 4.0 * self.cell if exact_within is None else checks.number("exact_within", exact_within)
         near = float(checked_bound("exact_within", within)) / self.cell
         distances = distances_to_obstacle(self.occupied, self.clearance, self.cell, cells, near)
@@ -508,7 +508,7 @@ class City:
         shape = check_segments(first, last, bound)
         within = np.broadcast_to(bound / self.cell, shape).flatten()
         starts, ends = (
-            np.array(np.broadcast_to((points - self.origin) / self.cell, (*shape, 3))).reshape(-1, 3)
+            np.array(np.broadcast_to((points - self.origin) / self.cell, (*shape, 3)), order="C").reshape(-1, 3)
             for points in (first, last)
         )
         distances = segment_clearances(self.runs, self.clearance, self.cell, starts, ends, within)
@@ -590,7 +590,9 @@ class City:
         >>> int(city.blocked(5.0, min_height=20.0, max_height=60.0).sum())
         6352
         """
-        min_clearance = checks.not_negative_number("min_clearance", min_clearance)
+        min_clearance = checks.number("min_clearance", min_clearance)
+        if not (np.isfinite(min_clearance) and min_clearance >= 0):
+            raise ValueError(f"min_clearance must be a distance in metres, at least 0, got {min_clearance:g}")
         min_height, max_height = check_heights(min_height, max_height)
         blocked = self.occupied
         if min_clearance > 0:

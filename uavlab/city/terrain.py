@@ -353,7 +353,7 @@ class Terrain:
     def bridges(self) -> np.ndarray:
         """Triangles (G, 3) that join the rims of the surface and what points lie beside it, for its gaps."""
         rims = rims_of(self.triangles, len(self.points))
-        return np.asarray(rims[triangulated(self.points[rims])])
+        return checks.frozen(rims[triangulated(self.points[rims])], np.int64)
 
 
 def checked_terrain(terrain: Any) -> Terrain | float | None:

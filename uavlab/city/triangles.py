@@ -45,6 +45,7 @@ def heights_of(points: np.ndarray, triangles: np.ndarray, plan: np.ndarray) -> n
     heights = np.full(len(plan), np.nan)
     if len(triangles) == 0 or len(plan) == 0:
         return heights
+    plan = np.array(plan, order="C")  # any other layout would be compiled anew
     bins = min(math.isqrt(len(plan)) + 1, 2000)
     low, extent = plan.min(axis=0), np.ptp(plan, axis=0)
     width = np.maximum(extent, 1e-9) / bins

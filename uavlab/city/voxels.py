@@ -133,7 +133,7 @@ def voxels_on_segment(start, end):
 
 def voxels_on_polyline(points: np.ndarray, cell: float, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Voxels that the legs between points (N, 3) [m], at least two, pass through, and their length in each [m]."""
-    cells = (points - origin) / cell
+    cells = np.ascontiguousarray((points - origin) / cell)
     passed = np.abs(np.diff(cells, axis=0)).sum()
     if passed > MOST_PASSED or np.abs(cells).max() > FARTHEST:
         raise ValueError(
