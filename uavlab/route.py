@@ -99,7 +99,7 @@ def as_route(way: Route | Way, name: str = "route") -> Route:
     Raises
     ------
     ValueError
-        If `way` is neither a route nor can be made one.
+        If `way` is neither a route nor can be made one, or `name` is no text.
 
     See Also
     --------
@@ -173,7 +173,9 @@ class Route:
     ------
     ValueError
         If `points` hasn't shape (N, 3) or is not finite. If `min_clearance`, `min_height` or `safe_height` is negative
-        or not finite. If `max_height` is not above `min_height`. If `max_length` is not above 0.
+        or not finite. If `max_height` is not above `min_height`. If `max_length` is not above 0. If `planner`, `reason`
+        or `priced` is no text, `reached` neither True nor False, `cost` no number, `info` no dict, or `takeoff` or
+        `landing` no whole number of at least 0.
 
     See Also
     --------
@@ -400,7 +402,8 @@ class Route:
         Raises
         ------
         ValueError
-            If `city` is no City, `values` haven't its shape, or the route leaves the map.
+            If `city` is no City, `values` haven't its shape or aren't finite where the route passes, or the route
+            leaves the map.
 
         See Also
         --------
@@ -417,7 +420,7 @@ class Route:
         39.0
         """
         checks.instance("city", city, City)
-        values = values if isinstance(values, np.ndarray) else checks.numbers("values", values)
+        values = values if type(values) is np.ndarray else checks.numbers("values", values)
         if values.shape != city.shape:
             raise ValueError(f"values must have the city's shape {city.shape}, got {values.shape}")
         index, length = self.voxels(city)
@@ -479,7 +482,7 @@ class Route:
         Raises
         ------
         ValueError
-            If `step` is not finite and above 0.
+            If `step` is not finite and above 0, or makes more than ten million waypoints.
 
         See Also
         --------
