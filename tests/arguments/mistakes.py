@@ -127,6 +127,8 @@ RIGHTFUL = {
     "statistics.grouped_share_interval.counts": {"bools"},  # whether there was an event
     "risk.shelter_layer.ground": {"one number"},
     "city.City.from_buildings.terrain": {"3"},
+    "route.Route.integral.values": {"NaN inside", "None inside", "inf inside"},  # refused only where the route passes
+    "plot.bars.values": {"NaN inside"},  # has no bar, such as the clearance of a route that doesn't arrive
 }
 """Mistakes that are none, by function and parameter."""
 
