@@ -41,10 +41,6 @@ ROWS = {
 
 ANY_COLUMNS = {
     "spline.bspline.control", "spline.cubic_bspline.control", "spline.fitted.points", "spline.subdivided.control",
-    "plot.bars.values": {"NaN inside"},  # no bar
-    "optimizers.bas.start": {"deeper"},  # one point as a row of several
-    "optimizers.pso.start": {"deeper"},
-    "optimizers.pso_bas.start": {"deeper"},
     "statistics.over_maps.values", "statistics.share_over_maps.values", "city.Terrain.from_raster.heights",
     "risk.raster_layer.values",
 }  # fmt: skip
@@ -131,13 +127,10 @@ RIGHTFUL = {
     "statistics.grouped_share_interval.counts": {"bools"},  # whether there was an event
     "risk.shelter_layer.ground": {"one number"},
     "city.City.from_buildings.terrain": {"3"},
-    "plot.bars.values": {"NaN inside"},  # no bar
+    "route.Route.integral.values": {"NaN inside", "None inside", "inf inside"},  # refused only where the route passes
     "optimizers.bas.start": {"deeper"},  # one point as a row of several
     "optimizers.pso.start": {"deeper"},
     "optimizers.pso_bas.start": {"deeper"},
-    "statistics.over_maps.values": {"inf inside"},  # runs that failed have infinite gaps, their median is asked for
-    "route.Route.integral.values": {"NaN inside", "inf inside", "None inside", "masked"},  # where it doesn't pass
-    "route.Route.integral.values": {"NaN inside", "None inside", "inf inside"},  # refused only where the route passes
     "plot.bars.values": {"NaN inside"},  # has no bar, such as the clearance of a route that doesn't arrive
 }
 """Mistakes that are none, by function and parameter."""
