@@ -211,7 +211,7 @@ def test_points_on_planes_stay_on_the_map_and_reach_its_walls():
         ((37, 3, 3), (31, 21, 9)),
     ):
         task = curves.task_of(risk_map, ends_of(risk_map, *ends), price, RISK, limits, True)
-        space = module.space_of(task, 5, "planes")
+        space = encoding.space_of(task, 5, "planes")
         corners = np.array(list(itertools.product((0, 1), repeat=2)))
         low, high = space.bounds.reshape(5, 2, 2)[..., 0], space.bounds.reshape(5, 2, 2)[..., 1]
         control = space.control(np.stack([(low + c * (high - low)).ravel() for c in corners]))
@@ -234,7 +234,7 @@ def test_arcs_are_curves_on_the_map_that_bend_to_both_sides():
     assert arcs[:, -1] == pytest.approx(np.broadcast_to(task.target, (2000, 3)))
     assert (arcs >= 0).all()
     assert (arcs < task.sky.closed.shape).all()
-    side = module.sideways_of(task)
+    side = encoding.sideways_of(task)
     sideways = (arcs[:, 4] - (task.source + task.target) / 2) @ side
     assert (sideways > 0).mean() == pytest.approx(0.5, abs=4 * 0.5 / 2000**0.5)
     assert np.abs(sideways).mean() > 2
