@@ -9,7 +9,7 @@ import pytest
 from risk_references import campus, made_of
 
 from uavlab.city import City
-from uavlab.planners import ant_colony, curves, least_risk, refine, waypoint_swarm
+from uavlab.planners import ant_colony, curves, encoding, least_risk, refine, waypoint_swarm
 from uavlab.planners import risk_question as question
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 from uavlab.route import Route
