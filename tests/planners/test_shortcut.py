@@ -95,7 +95,9 @@ def test_a_dear_zone_is_not_cut_through():
     short = shortcut(route, OPEN, price=price)
     assert short.length > 30
     assert short.cost == pytest.approx(short.length)  # it stays where a metre costs 1
-    assert shortcut(route, OPEN, price=1.0).length == 19  # without the price, it is a straight line
+    straight = shortcut(route, OPEN, price=1.0)  # without the price, it is a straight line
+    assert straight.length == straight.cost == 19
+    assert shortcut(route, OPEN, price=2.5).cost == 2.5 * 19
 
 
 @pytest.mark.parametrize("seed", range(60))

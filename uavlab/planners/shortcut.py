@@ -120,6 +120,8 @@ def shortcut(
     cost *= city.cell
     for part in vertical:
         cost += part.length if prices is None else part.integral(city, prices)
+    if prices is None and price is not None:
+        cost *= float(np.asarray(price))  # the same everywhere
     priced = "" if prices is None else route.priced or "price"
     return replace(route, points=points, planner=f"{route.planner} + shortcut", cost=cost, priced=priced, **promises)
 
