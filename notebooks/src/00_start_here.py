@@ -209,7 +209,7 @@ assert saved > 0.8
 scene.show(campus.city, around, {"safest of the shortest": across}, risk=campus)
 
 # %% [markdown]
-# Bright ground is where a fall would cost most, on a scale of factors. How such a map is made, what its numbers mean
+# Bright ground is where a fall would cost most, on a logarithmic scale. How such a map is made, what its numbers mean
 # and whether the papers' claims about it hold: [05 risk maps](05_risk_maps.ipynb).
 #
 # ## Your turn
