@@ -70,7 +70,7 @@ def test_progress_is_shown_for_very_many_things_only(monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("content", "advice"),
     [
-        (gzip.compress(b"{}"), "packed with gzip: unpack it"),
+        (gzip.compress(b"{}", mtime=0), "packed with gzip: unpack it"),
         (b"PK\x03\x04\xff", "a zip archive: unpack it"),
         ('{"a": 1}'.encode("utf-16"), "UTF-16: save it as UTF-8"),
         ('{"a": "ß"}'.encode("latin-1"), "byte 7$"),

@@ -34,7 +34,7 @@ from uavlab.city.rasterise import bilinear, mark_ground, range_of_ground, raster
 from uavlab.city.segments import Runs, runs_of, segment_clearances
 from uavlab.city.source import Source
 from uavlab.city.terrain import Terrain, checked_terrain
-from uavlab.city.voxels import TOUCH, distances_to_obstacle, squared_clearance, voxels_on_polyline
+from uavlab.city.voxels import SURFACE, distances_to_obstacle, squared_clearance, voxels_on_polyline
 from uavlab.city.zones import NoFlyZone, body_of, checked_zones
 
 TINY = 1e-300
@@ -549,8 +549,8 @@ class City:
         False
         """
         keep = checks.not_negative_number("min_clearance", min_clearance)
-        distance = self.segment_distance(start, end, at_most=keep + TOUCH * self.cell)
-        clear = (distance >= keep - TOUCH * self.cell) & (distance > 0.5 * TOUCH * self.cell)
+        distance = self.segment_distance(start, end, at_most=keep + SURFACE * self.cell)
+        clear = (distance >= keep - SURFACE * self.cell) & (distance > 0.5 * SURFACE * self.cell)
         return clear & self.inside(start) & self.inside(end)
 
     def blocked(self, min_clearance: float = 0.0, *, min_height: float = 0.0, max_height: float = np.inf) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 
 from uavlab.compiled import compiled
 
-ROUNDING = 1e-9
+EDGE_SLACK = 1e-9
 """So much of a triangle beyond its sides still counts as in it."""
 
 
@@ -70,9 +70,9 @@ def heights_in_bins(points, triangles, places, low, width, order, first, heights
         for axis in range(2):
             least = min(points[a, axis], points[b, axis], points[c, axis])
             most = max(points[a, axis], points[b, axis], points[c, axis])
-            slack = ROUNDING * (most - least)
+            slack = EDGE_SLACK * (most - least)
             start, end = (least - slack - low[axis]) / width[axis], (most + slack - low[axis]) / width[axis]
-            outside = outside or end < 0 or start > bins + ROUNDING
+            outside = outside or end < 0 or start > bins + EDGE_SLACK
             bounds[axis, 0] = math.floor(min(max(start, 0.0), bins - 1.0))
             bounds[axis, 1] = math.floor(min(max(end, 0.0), bins - 1.0))
         if outside:
@@ -94,6 +94,6 @@ def height_in_triangle(a, b, c, place):
     if twice == 0:
         return np.nan
     u, v = (px * cy - py * cx) / twice, (bx * py - by * px) / twice
-    if u < -ROUNDING or v < -ROUNDING or u + v > 1 + ROUNDING:
+    if u < -EDGE_SLACK or v < -EDGE_SLACK or u + v > 1 + EDGE_SLACK:
         return np.nan
     return a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2])

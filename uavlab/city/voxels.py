@@ -11,7 +11,7 @@ import numpy as np
 
 from uavlab.compiled import compiled
 
-TOUCH = 1e-9
+SURFACE = 1e-9
 """What is nearer than this touches [cells]."""
 
 MOST_PASSED = 50_000_000
@@ -20,7 +20,7 @@ MOST_PASSED = 50_000_000
 FARTHEST = 2.0**52
 """From here on [cells] a float no longer tells where in its voxel a point is."""
 
-ROUNDING = 1e-12
+SAME_SHARE = 1e-12
 """Shares of a segment that differ by less are the same point."""
 
 
@@ -115,7 +115,7 @@ def voxels_on_segment(start, end):
     reached = 0.0
     while True:
         face = min(1.0, crossing[0], crossing[1], crossing[2])
-        if face > 1.0 - ROUNDING:
+        if face > 1.0 - SAME_SHARE:
             face = 1.0
         if face > reached or (count == 0 and face == 1.0):
             for axis in range(3):
@@ -126,7 +126,7 @@ def voxels_on_segment(start, end):
             return voxels[:count], leave[:count]
         reached = face
         for axis in range(3):
-            if crossing[axis] <= face + ROUNDING:
+            if crossing[axis] <= face + SAME_SHARE:
                 voxel[axis] += step[axis]
                 crossing[axis] += between[axis]
 
@@ -213,9 +213,9 @@ def touches_blocked(blocked, start, end, share):
     y = start[1] + share * (end[1] - start[1])
     z = start[2] + share * (end[2] - start[2])
     nx, ny, nz = blocked.shape
-    for i in range(max(math.floor(x - TOUCH), 0), min(math.floor(x + TOUCH), nx - 1) + 1):
-        for j in range(max(math.floor(y - TOUCH), 0), min(math.floor(y + TOUCH), ny - 1) + 1):
-            for k in range(max(math.floor(z - TOUCH), 0), min(math.floor(z + TOUCH), nz - 1) + 1):
+    for i in range(max(math.floor(x - SURFACE), 0), min(math.floor(x + SURFACE), nx - 1) + 1):
+        for j in range(max(math.floor(y - SURFACE), 0), min(math.floor(y + SURFACE), ny - 1) + 1):
+            for k in range(max(math.floor(z - SURFACE), 0), min(math.floor(z + SURFACE), nz - 1) + 1):
                 if blocked[i, j, k]:
                     return True
     return False
