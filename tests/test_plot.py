@@ -113,6 +113,14 @@ def test_curve_profile_draws_curvature_and_pitch_with_the_papers_limits_and_ours
     assert above.lines[0].get_color() != above.lines[2].get_color()
 
 
+@pytest.mark.parametrize("speed", [4.5, 5.0, 5.32, 6.0, 7.0, 16.0])
+def test_limits_of_curvature_near_to_each_other_are_labelled_apart(speed):
+    figure = plot.curve_profile(Curve([(0, 0, 0), (20, 10, 5), (40, 0, 0)]), speed=speed, cell=5.0)
+    figure.draw_without_rendering()
+    papers, banked = (text.get_window_extent() for text in figure.axes[0].texts)
+    assert not papers.overlaps(banked)
+
+
 def test_curve_profile_of_a_corner_shows_what_is_finite():
     corner = np.repeat([[10.0, 10, 30], [40, 10, 30], [40, 40, 30]], [1, 3, 1], axis=0)
     above = plot.curve_profile(Curve(corner), speed=8.0, cell=5.0).axes[0]

@@ -32,6 +32,9 @@ from uavlab.spline.curve import BANK, CONTACT
 from uavlab.spline.limits import MAX_PITCH
 from uavlab.vehicle import GRAVITY
 
+LABEL_HEIGHT = 0.17
+"""Of two lines beside a panel, as a share of its height: limits nearer than that are labelled above and below."""
+
 
 def curve_profile(
     *curves: Curve | Mapping[str, Curve], speed: float, cell: float, bank: float = BANK, max_pitch: float = MAX_PITCH
@@ -92,16 +95,21 @@ def curve_profile(
         above.plot(curve.distance, finite_or_nan(curve.level_curvature), ":", color=color, linewidth=1.2)
         below.plot(curve.distance, np.degrees(curve.pitch), color=color)
     above.plot([], ":", color="0.3", linewidth=1.2, label="level part of it")
+    papers, banked = 1 / cell, GRAVITY * np.tan(bank) / speed**2
+    highest = 1.15 * max(above.get_ylim()[1], papers, banked)
+    sides = ("bottom", "top") if papers >= banked else ("top", "bottom")
+    if abs(papers - banked) > LABEL_HEIGHT * highest:
+        sides = ("center", "center")
     limits = (
-        (above, 1 / cell, f"papers: 1 per\nvoxel of {cell:g} m"),
-        (above, GRAVITY * np.tan(bank) / speed**2, f"{np.degrees(bank):.0f}° of bank\nat {speed:g} m/s"),
-        (below, np.degrees(max_pitch), f"±{np.degrees(max_pitch):.0f}°"),
-        (below, -np.degrees(max_pitch), ""),
+        (above, papers, f"papers: 1 per\nvoxel of {cell:g} m", sides[0]),
+        (above, banked, f"{np.degrees(bank):.0f}° of bank\nat {speed:g} m/s", sides[1]),
+        (below, np.degrees(max_pitch), f"±{np.degrees(max_pitch):.0f}°", "center"),
+        (below, -np.degrees(max_pitch), "", "center"),
     )
-    for axes, limit, text in limits:
+    for axes, limit, text, side in limits:
         axes.axhline(limit, color="0.3", linestyle="--", linewidth=1)
-        axes.annotate(text, (1.01, limit), xycoords=("axes fraction", "data"), va="center", fontsize=8, color="0.3")
-    above.set(ylabel="curvature κ [1/m]", ylim=(0, 1.15 * max(above.get_ylim()[1], 1 / cell)))
+        axes.annotate(text, (1.01, limit), xycoords=("axes fraction", "data"), va=side, fontsize=8, color="0.3")
+    above.set(ylabel="curvature κ [1/m]", ylim=(0, highest))
     below.set(xlabel="distance flown [m]", ylabel="pitch [°]")
     below.set_ylim(*(1.25 * max(np.degrees(max_pitch), *np.abs(below.get_ylim())) * np.array([-1, 1])))
     figure.legend(fontsize=8, loc="outside upper center", ncols=4)
