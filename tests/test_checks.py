@@ -1,6 +1,7 @@
 """What several functions check alike."""
 
 import os
+from dataclasses import astuple, make_dataclass
 
 import numpy as np
 import pytest
@@ -60,6 +61,18 @@ def test_a_seed_of_any_width_is_one():
         (lambda: checks.positive_number("x", np.inf), "x must be finite and above 0, got inf"),
         (lambda: checks.not_negative_number("x", -1), "x must be finite and at least 0, got -1"),
         (lambda: checks.not_negative_number("x", np.nan), "x must be finite and at least 0, got nan"),
+        (
+            lambda: checks.number("share", 2, checks.within, 0.0, 1.0, "of all"),
+            "share must be from 0 to 1 of all, got 2",
+        ),
+        (
+            lambda: checks.number("share", [0.5], checks.share),
+            r"share must be one number, got an array of shape \(1,\)",
+        ),
+        (lambda: checks.listed("holes", "abc", "outlines"), "holes must be a list of outlines, got str"),
+        (lambda: checks.listed("holes", {}, "outlines"), "holes must be a list of outlines, got dict"),
+        (lambda: checks.seeds("seeds", "012"), r"seeds must be whole numbers, such as range\(10\), got '012'"),
+        (lambda: checks.seeds("seeds", [0, True]), r"seeds must be whole numbers of at least 0, .*, got True in them"),
         (lambda: checks.text("name", 3), "name must be text, got 3"),
         (lambda: checks.whole("flights", 10**400, 1), "flights must be at most 1,000,000,000, or it never ends"),
         (lambda: checks.path("path", 2), "path must be the name of a file, got 2"),
@@ -94,3 +107,27 @@ def test_what_is_right_comes_back(tmp_path):
 def test_texts_come_back_plain():
     assert type(checks.text("name", np.str_("city"))) is str
     assert type(checks.one_of("zone", np.str_("ball"), ("ball", "ring"))) is str
+
+
+def test_a_number_may_have_to_stand_another_check():
+    share = checks.number("share", np.uint8(1), checks.within, 0.0, 1.0, "of all")
+    assert share == 1.0
+    assert type(share) is type(checks.number("share", np.float64(0.5), checks.share)) is float
+
+
+def test_seeds_of_any_width_come_back_plain():
+    seeds = checks.seeds("seeds", iter([np.uint8(3), 2**70]))
+    assert seeds == [3, 2**70]
+    assert {type(seed) for seed in seeds} == {int}
+
+
+@pytest.mark.parametrize("frozen", [True, False])
+def test_fields_become_what_a_check_makes_of_them(frozen):
+    kind = make_dataclass("Pair", ["low", "high", "name"], frozen=frozen)
+    pair = kind(np.uint8(3), 4, np.str_("a"))
+    checks.set_fields(pair, checks.number, "low", "high", check=checks.finite)
+    checks.set_fields(pair, checks.one_of, "name", known=("a", "b"))
+    assert pair == kind(3.0, 4.0, "a")
+    assert [type(value) for value in astuple(pair)] == [float, float, str]
+    with pytest.raises(ValueError, match="high must be finite, got inf"):
+        checks.set_fields(kind(1.0, np.inf, "a"), checks.number, "low", "high", check=checks.finite)

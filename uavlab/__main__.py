@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from uavlab import __version__
+from uavlab.files import beside, written_whole
 from uavlab.report import grounded_page, report
 from uavlab.requirements import require
 from uavlab.whole_way import (
@@ -210,26 +211,19 @@ def refuse_unwritable(path: Path) -> None:
     try:
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        beside = beside_of(path)
-        beside.touch()
-        beside.unlink()
+        part = beside(path)
+        part.touch()
+        part.unlink()
     except OSError as error:
         raise OSError(f"can't write {path}: {error.strerror}; choose another file with --out") from error
 
 
-def beside_of(path: Path) -> Path:
-    """Where a page is written before it takes the place of an old one."""
-    return path.with_name(f"{path.name}.{os.getpid()}.part")
-
-
 def write(path: Path, page: str) -> None:
-    """Write a page beside its place first, so that an old one isn't lost if that fails."""
-    beside = beside_of(path)
+    """Write a page; an old one isn't lost if that fails."""
     try:
-        beside.write_text(page, encoding="utf-8")
-        beside.replace(path)
+        with written_whole(path) as part:
+            part.write_text(page, encoding="utf-8")
     except OSError as error:
-        beside.unlink(missing_ok=True)
         raise OSError(f"can't write {path}: {error.strerror}; choose another file with --out") from error
 
 

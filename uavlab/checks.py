@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import Decimal
 from os import PathLike
 from pathlib import Path
@@ -45,14 +45,19 @@ def frozen(values: npt.ArrayLike, kind: npt.DTypeLike = float) -> np.ndarray:
     return array
 
 
-def number(name: str, value: npt.ArrayLike) -> float:
-    """The argument as one float: 10 of 8 bits, times 3600, would be too much for them."""
-    if isinstance(value, float):
-        return float(value)
-    values = numbers(name, value)
-    if values.shape:
-        raise ValueError(f"{name} must be one number, got an array of shape {values.shape}")
-    return float(values)
+def number(name: str, value: npt.ArrayLike, check: Callable[..., Any] | None = None, *limits: Any) -> float:
+    """The argument as one float: 10 of 8 bits, times 3600, would be too much for them.
+
+    With `check`, such as `positive`, it must stand that, too: `number("share", share, within, 0.0, 1.0, "of all")`.
+    """
+    if not isinstance(value, float):
+        values = numbers(name, value)
+        if values.shape:
+            raise ValueError(f"{name} must be one number, got an array of shape {values.shape}")
+        value = float(values)
+    if check is not None:
+        check(name, value, *limits)
+    return float(value)
 
 
 def whole(name: str, value: int, least: int, most: int = MOST) -> int:
@@ -69,13 +74,27 @@ def generator(name: str, rng: np.random.Generator | int | Sequence[int]) -> np.r
     """The generator itself, or a new one from a seed; what gives other numbers each time is refused."""
     if isinstance(rng, np.random.Generator):
         return rng
-    seeds = rng if isinstance(rng, list | tuple) and rng else [rng]
-    if all(isinstance(seed, int | np.integer) and not isinstance(seed, bool) and seed >= 0 for seed in seeds):
+    if all(map(is_seed, rng if isinstance(rng, list | tuple) and rng else [rng])):
         return np.random.default_rng(rng)
     raise ValueError(
         f"{name} must be a numpy.random.Generator, or a seed (a whole number of at least 0, or a list of some), so "
         f"that the result can be had again, got {rng!r:.60}"
     )
+
+
+def is_seed(value: object) -> bool:
+    return isinstance(value, int | np.integer) and not isinstance(value, bool) and bool(value >= 0)
+
+
+def seeds(name: str, values: Iterable[int]) -> list[int]:
+    """Seeds of several runs."""
+    if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
+        raise ValueError(f"{name} must be whole numbers, such as range(10), got {values!r:.60}")
+    several = list(values)
+    for seed in several:
+        if not is_seed(seed):
+            raise ValueError(f"{name} must be whole numbers of at least 0, such as range(10), got {seed!r:.60} in them")
+    return [int(seed) for seed in several]
 
 
 def within(name: str, value: npt.ArrayLike, low: float, high: float, unit: str) -> None:
@@ -100,17 +119,15 @@ def positive(name: str, value: npt.ArrayLike) -> None:
 
 
 def not_negative_number(name: str, value: npt.ArrayLike) -> float:
-    one = number(name, value)
-    if not 0 <= one < np.inf:
-        raise ValueError(f"{name} must be finite and at least 0, got {one:g}")
-    return one
+    if isinstance(value, float) and 0 <= value < np.inf:  # most are
+        return float(value)
+    return number(name, value, not_negative)
 
 
 def positive_number(name: str, value: npt.ArrayLike) -> float:
-    one = number(name, value)
-    if not 0 < one < np.inf:
-        raise ValueError(f"{name} must be finite and above 0, got {one:g}")
-    return one
+    if isinstance(value, float) and 0 < value < np.inf:
+        return float(value)
+    return number(name, value, positive)
 
 
 def at_least_one(name: str, value: npt.ArrayLike) -> None:
@@ -172,11 +189,16 @@ def function(name: str, value: Any, how: str = "") -> Any:
     return value
 
 
+def listed(name: str, values: Any, what: str) -> list[Any]:
+    """Anything that can be gone through as a list, but for text and mappings; `what` says of what."""
+    if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
+        raise ValueError(f"{name} must be a list of {what}, got {type(values).__name__}")
+    return list(values)
+
+
 def several(name: str, values: Any, kind: type, *, least: int = 1) -> list[Any]:
     """A list of things of a kind; one of them alone is refused, and too few."""
-    if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
-        raise ValueError(f"{name} must be a list of {kind.__name__}, got {type(values).__name__}")
-    things = list(values)
+    things = listed(name, values, kind.__name__)
     for number, thing in enumerate(things):
         instance(f"{name}[{number}]", thing, kind)
     if len(things) < least:
@@ -301,12 +323,10 @@ def samples(values: npt.ArrayLike, *, least: int, axes: int = 1) -> np.ndarray:
     return values
 
 
-def as_floats(thing: object, *names: str) -> None:
-    """Make fields of a frozen dataclass floats: a NumPy scalar of 8 bits can't be squared."""
+def set_fields(thing: object, check: Callable[..., Any], /, *names: str, **limits: Any) -> None:
+    """Make of fields of a dataclass, frozen or not, what a check makes of them: `set_fields(self, number, "sigma")`."""
     for name in names:
-        value = getattr(thing, name)
-        if isinstance(value, np.generic | int) and not isinstance(value, bool):
-            object.__setattr__(thing, name, float(value))
+        object.__setattr__(thing, name, check(name, getattr(thing, name), **limits))
 
 
 def refuse(values: np.ndarray, right: np.ndarray, demand: str) -> None:

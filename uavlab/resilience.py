@@ -201,7 +201,7 @@ def kind_and_speed(disturbance: str | Wind | Weather, name: str = "disturbance")
     """
     checks.text("name", name)
     if isinstance(disturbance, str):
-        return str(checks.one_of(name, disturbance, DISTURBANCES)), DISTURBANCES[disturbance]
+        return checks.one_of(name, disturbance, DISTURBANCES), DISTURBANCES[disturbance]
     if not isinstance(disturbance, Wind | Weather):
         raise ValueError(
             f"{name} must be one of {', '.join(map(repr, DISTURBANCES))}, a Wind or a Weather, got {disturbance!r:.60}"
@@ -437,10 +437,8 @@ class ConditionCheck:
     now: float = field(init=False, default=-np.inf)
 
     def __post_init__(self) -> None:
-        for name in ("predicted", "step", "hold"):
-            setattr(self, name, checks.positive_number(name, getattr(self, name)))
-        self.release = checks.number("release", self.release)
-        checks.share("release", self.release)
+        checks.set_fields(self, checks.positive_number, "predicted", "step", "hold")
+        checks.set_fields(self, checks.number, "release", check=checks.share)
 
     def __repr__(self) -> str:
         return f"<ConditionCheck: {self.boundary:g} m now, {self.predicted:g} m predicted, changes: {len(self.log)}>"
@@ -652,9 +650,8 @@ class Monitor:
 
     def __post_init__(self) -> None:
         checks.instance("check", self.check, ConditionCheck)
-        for name in ("uav_diameter", "spare", "hold"):
-            setattr(self, name, checks.positive_number(name, getattr(self, name)))
-        self.level = str(checks.one_of("level", self.level, LEVELS))
+        checks.set_fields(self, checks.positive_number, "uav_diameter", "spare", "hold")
+        checks.set_fields(self, checks.one_of, "level", known=LEVELS)
         if self.level == "grounded":
             raise ValueError("level is 'grounded': there is no flight to watch; wait, or carry less")
         if self.level == "advanced":

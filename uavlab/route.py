@@ -12,7 +12,9 @@ import numpy as np
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.city.extent import checked_heights
 from uavlab.city.segments import least_clearance
+from uavlab.files import written_whole
 
 PROMISES = ("min_clearance", "min_height", "max_height", "safe_height")
 """What routes and curves remember that they keep [m]."""
@@ -48,10 +50,9 @@ def check_promises(of: Any) -> None:
         ...
     ValueError: min_clearance must be finite and at least 0, got -1
     """
-    for name in ("min_clearance", "min_height", "safe_height"):
+    for name in ("min_clearance", "safe_height"):
         checks.not_negative_number(name, getattr(of, name))
-    if not checks.number("max_height", of.max_height) > of.min_height:
-        raise ValueError(f"max_height must be above min_height = {of.min_height!r}, got {of.max_height!r}")
+    checked_heights(of.min_height, of.max_height)
 
 
 def promises_of(one: Any, **instead: float | None) -> dict[str, Any]:
@@ -210,19 +211,15 @@ class Route:
     priced: str = ""
 
     def __post_init__(self) -> None:
+        checks.set_fields(self, checks.number, "cost", "max_length", *PROMISES)
         check_promises(self)
-        if not checks.number("max_length", self.max_length) > 0:
-            raise ValueError(f"max_length must be above 0, got {self.max_length!r}")
+        if not self.max_length > 0:
+            raise ValueError(f"max_length must be above 0, got {self.max_length:g}")
         checks.instance("info", self.info, dict)
-        checked: dict[str, Any] = {
-            "points": checks.array("points", self.points, None, 3).copy(),
-            "reached": checks.flag("reached", self.reached),
-        }
-        checked |= {name: str(checks.text(name, getattr(self, name))) for name in ("planner", "reason", "priced")}
-        checked |= {name: checks.whole(name, getattr(self, name), 0) for name in ("takeoff", "landing")}
-        checked |= {name: checks.number(name, getattr(self, name)) for name in ("cost", "max_length", *PROMISES)}
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        object.__setattr__(self, "points", checks.array("points", self.points, None, 3).copy())
+        checks.set_fields(self, checks.flag, "reached")
+        checks.set_fields(self, checks.text, "planner", "reason", "priced")
+        checks.set_fields(self, checks.whole, "takeoff", "landing", least=0)
 
     @classmethod
     def none(cls, planner: str, reason: str, **info: Any) -> Route:
@@ -539,8 +536,10 @@ class Route:
         5.0,5.0,30.0,0.0
         40.0,5.0,30.0,35.0
         """
-        checks.path("path", path)
-        with open(path, "w", newline="", encoding="utf-8") as file:
+        with (
+            written_whole(checks.path("path", path)) as part,
+            part.open("w", newline="", encoding="utf-8") as file,
+        ):
             writer = csv.writer(file)
             writer.writerow(["x_m", "y_m", "z_m", "distance_m"])
             writer.writerows(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import warnings
 import zipfile
 import zlib
@@ -22,6 +21,7 @@ from uavlab import checks
 from uavlab.city import Building, City, NoFlyZone
 from uavlab.city.place import Place
 from uavlab.city.source import Entry, Source
+from uavlab.files import written_whole
 from uavlab.planners.repare import Plan
 from uavlab.risk import RiskMap
 from uavlab.route import Route
@@ -74,17 +74,12 @@ def save(thing: Saved, path: str | Path) -> None:
     """
     if not isinstance(thing, Route | Curve | City | RiskMap):
         raise ValueError(f"thing must be a Route, a Curve, a City or a RiskMap, got {type(thing).__name__}")
-    target = checks.path("path", path)
+    path = checks.path("path", path)
     arrays: dict[str, np.ndarray] = {}
     header = {"version": VERSION, "thing": described(thing, arrays)}
-    beside = target.with_name(f"{target.name}.{os.getpid()}.part")
-    try:
-        with beside.open("wb") as file:
-            text = np.frombuffer(json.dumps(header).encode(), np.uint8)
-            np.savez_compressed(file, allow_pickle=False, **{HEADER: text}, **arrays)
-        beside.replace(target)
-    finally:
-        beside.unlink(missing_ok=True)
+    with written_whole(path) as part, part.open("wb") as file:
+        text = np.frombuffer(json.dumps(header).encode(), np.uint8)
+        np.savez_compressed(file, allow_pickle=False, **{HEADER: text}, **arrays)
 
 
 def load(path: str | Path) -> Saved:

@@ -122,7 +122,7 @@ class UAV:
             value = getattr(self, item.name)
             checked: str | float
             if item.name == "name":
-                checked = str(checks.text("name", value))
+                checked = checks.text("name", value)
             elif item.name == "fall_drag_area" and value is None:
                 continue
             elif item.name in UNLIMITED and checks.number(item.name, value) == np.inf:

@@ -7,7 +7,7 @@ courtyard) is a union of pieces. Footprints of any shape are cut into triangles.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -85,11 +85,9 @@ class Building:
     def __post_init__(self) -> None:
         checks.text("name", self.name)
         checks.text("color", self.color)
-        if isinstance(self.pieces, str | Mapping) or not isinstance(self.pieces, Iterable):
-            raise ValueError(f"pieces must be a list of arrays of corners (M, 3), got {type(self.pieces).__name__}")
         pieces = tuple(
             checks.frozen(checks.array(f"pieces[{number}] of {self.name!r}", piece, None, 3))
-            for number, piece in enumerate(self.pieces)
+            for number, piece in enumerate(checks.listed("pieces", self.pieces, "arrays of corners (M, 3)"))
         )
         if not pieces:
             raise ValueError(f"pieces of {self.name!r} is empty: give at least one array of corners")
@@ -350,8 +348,7 @@ def footprint_polygon(
 ) -> shapely.Polygon:
     """A checked polygon; `ValueError` says where an outline crosses itself."""
     checks.text("name", name)
-    if isinstance(holes, str | Mapping) or not isinstance(holes, Iterable):
-        raise ValueError(f"holes must be a list of outlines (H, 2), got {type(holes).__name__}")
+    holes = checks.listed("holes", holes, "outlines (H, 2)")
     shell = checked_ring(outline, f"{argument} of {name!r}")
     inner = [checked_ring(hole, f"holes[{n}], a hole in the {argument} of {name!r},") for n, hole in enumerate(holes)]
     polygon = shapely.Polygon(shell, inner)

@@ -67,7 +67,7 @@ def checked_ground(ground: npt.ArrayLike, columns: tuple[int, ...]) -> np.ndarra
     return heights
 
 
-def check_heights(min_height: float, max_height: float) -> tuple[float, float]:
+def checked_heights(min_height: float, max_height: float) -> tuple[float, float]:
     """Heights above ground as floats; those that leave nothing in between are refused."""
     lowest, highest = checks.not_negative_number("min_height", min_height), checks.number("max_height", max_height)
     if not highest > lowest:

@@ -17,12 +17,12 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city.buildings import Building
 from uavlab.city.extent import (
-    check_heights,
     check_segments,
     checked_bound,
     checked_cell,
     checked_grid,
     checked_ground,
+    checked_heights,
     checked_occupied,
     checked_origin,
     extent_and_ground,
@@ -593,7 +593,7 @@ class City:
         min_clearance = checks.number("min_clearance", min_clearance)
         if not (np.isfinite(min_clearance) and min_clearance >= 0):
             raise ValueError(f"min_clearance must be a distance in metres, at least 0, got {min_clearance:g}")
-        min_height, max_height = check_heights(min_height, max_height)
+        min_height, max_height = checked_heights(min_height, max_height)
         blocked = self.occupied
         if min_clearance > 0:
             blocked = self.clearance < max(min_clearance - 1e-9 * self.cell, TINY)
@@ -633,7 +633,7 @@ class City:
         >>> city.coordinates(2)[~outside[0, 0]]
         array([22.5, 27.5, 32.5, 37.5, 42.5, 47.5, 52.5, 57.5])
         """
-        min_height, max_height = check_heights(min_height, max_height)
+        min_height, max_height = checked_heights(min_height, max_height)
         lowest, highest = self.range_of_ground
         levels = self.coordinates(2)
         too_low = levels < (highest + (min_height - 1e-9))[..., None]

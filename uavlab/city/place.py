@@ -79,11 +79,10 @@ class Place(Geographic):
     __slots__ = ()
 
     def __new__(cls, longitude: float, latitude: float, height: float = 0.0) -> Self:
-        east, north = checks.number("longitude", longitude), checks.number("latitude", latitude)
-        checks.within("longitude", east, -540.0, 540.0, "degrees")
-        checks.within("latitude", north, -90.0, 90.0, "degrees (the order is longitude, latitude)")
-        checks.finite("height", up := checks.number("height", height))
-        return super().__new__(cls, east, north, up)
+        east = checks.number("longitude", longitude, checks.within, -540.0, 540.0, "degrees")
+        degrees = "degrees (the order is longitude, latitude)"
+        north = checks.number("latitude", latitude, checks.within, -90.0, 90.0, degrees)
+        return super().__new__(cls, east, north, checks.number("height", height, checks.finite))
 
     def east_north(self, lonlat: npt.ArrayLike) -> np.ndarray:
         """East and north of longitudes and latitudes, in the plane that touches the Earth here.

@@ -362,8 +362,7 @@ def checked_terrain(terrain: Any) -> Terrain | float | None:
         return terrain
     if not isinstance(terrain, int | float | np.generic | np.ndarray) or np.ndim(terrain):
         checks.instance("terrain", terrain, Terrain)
-    checks.finite("terrain", level := checks.number("terrain", terrain))
-    return level
+    return checks.number("terrain", terrain, checks.finite)
 
 
 def ground_and_top(

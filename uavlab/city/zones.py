@@ -62,8 +62,7 @@ class NoFlyZone:
     name: str = "no-fly zone"
 
     def __post_init__(self) -> None:
-        for bound in ("lower", "upper"):
-            object.__setattr__(self, bound, checks.number(bound, getattr(self, bound)))
+        checks.set_fields(self, checks.number, "lower", "upper")
         if not (np.isfinite(self.lower) and self.upper > self.lower):
             raise ValueError(f"upper of {self.name!r} must be above its lower ({self.lower:g} m), got {self.upper:g} m")
         polygon = footprint_polygon(self.outline, self.holes, self.name, "outline")
@@ -112,9 +111,7 @@ class NoFlyZone:
         >>> len(pieces), pieces[0].shape
         (4, (6, 3))
         """
-        low, high = checks.number("low", low), checks.number("high", high)
-        checks.finite("low", low)
-        checks.finite("high", high)
+        low, high = checks.number("low", low, checks.finite), checks.number("high", high, checks.finite)
         if not high > low:
             raise ValueError(f"high must be above low ({low:g} m), got {high:g} m")
         return [extrude(part, low, high) for part in convex_parts(self.polygon)]

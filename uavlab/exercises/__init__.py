@@ -52,7 +52,7 @@ def check(number: str, answer: Any) -> Verdict:
     >>> check("06.1", lambda dx, dy, dz: dx + dy + dz)
     06.1: not yet. That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.
     """
-    number = str(checks.text("number", number))
+    number = checks.text("number", number)
     chapter, _, exercise = number.partition(".")
     try:
         module = importlib.import_module(f"uavlab.exercises.chapter{chapter}")

@@ -112,17 +112,13 @@ class Autopilot:
     def __post_init__(self) -> None:
         if self.monitor is not None:
             checks.instance("monitor", self.monitor, Monitor)
-        checked: dict[str, object] = {
-            "controller": checked_controller(self.controller),
-            "gps": checked_gps(self.gps),
-            "strategy": str(checks.one_of("strategy", self.strategy, STRATEGIES)),
-            "trimmed": checks.flag("trimmed", self.trimmed),
-            "heeds_limits": checks.flag("heeds_limits", self.heeds_limits),
-        }
-        for name in ("acceptance_radius", "interval", *(["speed"] if self.speed is not None else [])):
-            checked[name] = checks.positive_number(name, getattr(self, name))
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        object.__setattr__(self, "controller", checked_controller(self.controller))
+        object.__setattr__(self, "gps", checked_gps(self.gps))
+        checks.set_fields(self, checks.one_of, "strategy", known=STRATEGIES)
+        checks.set_fields(self, checks.flag, "trimmed", "heeds_limits")
+        checks.set_fields(self, checks.positive_number, "acceptance_radius", "interval")
+        if self.speed is not None:
+            checks.set_fields(self, checks.positive_number, "speed")
 
     def __repr__(self) -> str:
         speed = "cruise speed" if self.speed is None else f"{self.speed:g} m/s"

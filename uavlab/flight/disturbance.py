@@ -70,8 +70,8 @@ class OffsetProcess:
             raise ValueError(f"sigma must be one number or three (east, north, up), got shape {sigma.shape}")
         checks.not_negative("sigma", sigma)
         object.__setattr__(self, "sigma", tuple(sigma.tolist()) if sigma.shape else float(sigma))
-        object.__setattr__(self, "mean", checks.three("mean", self.mean))
-        object.__setattr__(self, "rough", checks.flag("rough", self.rough))
+        checks.set_fields(self, checks.three, "mean")
+        checks.set_fields(self, checks.flag, "rough")
 
     def step(self, time_step: float, controller: Controller) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """How offset and speed go on in a time step, exactly for any step.
@@ -186,9 +186,7 @@ def offset_sigma(
     from scipy.integrate import quad
 
     checks.instance("uav", uav, UAV)
-    if not isinstance(wind, Weather):
-        checks.instance("wind", wind, Wind)
-    wind, controller = wind_of(wind), checked_controller(controller)
+    wind, controller = wind_of(wind, "wind"), checked_controller(controller)
     altitude = checks.positive_number("altitude", altitude)
     stream = np.array(wind.mean) - checks.three("ground_velocity", ground_velocity)
     speed = float(np.linalg.norm(stream))

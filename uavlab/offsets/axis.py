@@ -50,9 +50,8 @@ class OffsetModel:
     sigma: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mean", checks.number("mean", self.mean))
-        object.__setattr__(self, "sigma", checks.positive_number("sigma", self.sigma))
-        checks.finite("mean", self.mean)
+        checks.set_fields(self, checks.number, "mean", check=checks.finite)
+        checks.set_fields(self, checks.positive_number, "sigma")
 
     @classmethod
     def fit(cls, samples: npt.ArrayLike) -> OffsetModel:
@@ -218,7 +217,7 @@ class OffsetModel:
         >>> [round(model.boundary(share), 2) for share in (0.6827, 0.9545, 0.9973)]
         [1.5, 2.5, 3.5]
         """
-        return float(self.quantile((1 + checks.share("coverage", checks.number("coverage", coverage))) / 2))
+        return float(self.quantile((1 + checks.number("coverage", coverage, checks.share)) / 2))
 
     def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
         """Independent offsets [m], (count,).
@@ -296,14 +295,12 @@ class SkewedOffset:
     turbulence_intensity: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mean", checks.number("mean", self.mean))
-        object.__setattr__(self, "sigma", checks.positive_number("sigma", self.sigma))
-        intensity = checks.number("turbulence_intensity", self.turbulence_intensity)
-        object.__setattr__(self, "turbulence_intensity", intensity)
-        checks.finite("mean", self.mean)
-        if not 0 < intensity <= 1:
+        checks.set_fields(self, checks.number, "mean", check=checks.finite)
+        checks.set_fields(self, checks.positive_number, "sigma")
+        checks.set_fields(self, checks.number, "turbulence_intensity")
+        if not 0 < self.turbulence_intensity <= 1:
             raise ValueError(
-                f"turbulence_intensity must be above 0 and at most 1, got {intensity:g}; "
+                f"turbulence_intensity must be above 0 and at most 1, got {self.turbulence_intensity:g}; "
                 "without turbulence use OffsetModel"
             )
 
@@ -541,7 +538,7 @@ class SkewedOffset:
         >>> [round(model.boundary(share), 2) for share in (0.6827, 0.9545, 0.9973)]
         [0.98, 2.4, 4.11]
         """
-        return float(self.quantile((1 + checks.share("coverage", checks.number("coverage", coverage))) / 2))
+        return float(self.quantile((1 + checks.number("coverage", coverage, checks.share)) / 2))
 
     def sample(self, count: int, rng: np.random.Generator | int) -> np.ndarray:
         """Independent offsets [m], (count,).

@@ -67,7 +67,7 @@ class JointOffset:
             if pair.shape != (2,):
                 raise ValueError(f"{name} must be two numbers, one for each axis, got shape {pair.shape}")
             object.__setattr__(self, name, tuple(pair.tolist()))
-        object.__setattr__(self, "correlation", checks.number("correlation", self.correlation))
+        checks.set_fields(self, checks.number, "correlation")
         checks.finite("mean", self.mean)
         checks.positive("sigma", self.sigma)
         if not -1 < self.correlation < 1:
@@ -308,7 +308,7 @@ class JointOffset:
         """
         from scipy.optimize import brentq
 
-        share = checks.share("coverage", checks.number("coverage", coverage))
+        share = checks.number("coverage", coverage, checks.share)
         widest = np.sqrt(np.linalg.eigvalsh(self.covariance)[-1])
         around_ellipse = np.hypot(*self.mean) + 1.01 * pauta_radius(2, coverage) * widest
         return float(brentq(lambda radius: self.within_circle(radius) - share, 0.0, around_ellipse, xtol=1e-12))

@@ -83,7 +83,7 @@ def pauta_radius(dimensions: int, coverage: float = PAUTA_COVERAGE) -> float:
     >>> [round(pauta_radius(dimensions), 3) for dimensions in (1, 2, 3)]
     [3.0, 3.439, 3.763]
     """
-    share = checks.share("coverage", checks.number("coverage", coverage))
+    share = checks.number("coverage", coverage, checks.share)
     return float(np.sqrt(2 * gammaincinv(checked_dimensions(dimensions) / 2, share)))
 
 
@@ -157,8 +157,7 @@ def pauta_filter(samples: npt.ArrayLike, radius_in_sigma: float = 3.0) -> Filter
     >>> pauta_filter(offsets)
     <Filtered: 197 of 200 samples kept, rounds: 2, mean 0.012 m, σ 0.970 m>
     """
-    radius_in_sigma = checks.number("radius_in_sigma", radius_in_sigma)
-    checks.at_least_one("radius_in_sigma", radius_in_sigma)
+    radius_in_sigma = checks.number("radius_in_sigma", radius_in_sigma, checks.at_least_one)
     values = checks.samples(samples, least=2)
     farthest = (len(values) - 1) / np.sqrt(len(values))
     if farthest <= radius_in_sigma:

@@ -69,7 +69,7 @@ class Counter:
 
     def __init__(self, f: Function, dimensions: int, budget: int, target: float | None = None) -> None:
         if target is not None:
-            checks.finite("target", target := checks.number("target", target))
+            target = checks.number("target", target, checks.finite)
         self.f = checks.function("f", f, "f(points)")
         self.target = -np.inf if target is None else target
         self.left = budget

@@ -222,7 +222,7 @@ def checked_habits(habits: Habits) -> Habits:
     """Them as floats, within their ranges."""
     named = {name: getattr(habits, name) for name in ("alpha", "beta", "gamma")}
     alpha, beta, gamma = (checks.not_negative_number(name, weight) for name, weight in named.items())
-    checks.share("evaporation", evaporation := checks.number("evaporation", habits.evaporation))
+    evaporation = checks.number("evaporation", habits.evaporation, checks.share)
     deposit = checks.positive_number("deposit", habits.deposit)
     least = checks.not_negative_number("min_pheromone", habits.least)
     first = checks.positive_number("initial_pheromone", habits.first)

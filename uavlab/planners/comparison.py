@@ -247,7 +247,7 @@ class Comparison:
         >>> bool((evaluations <= 200).all()), bool((iterations <= 20).all())  # ten ants an iteration
         (True, True)
         """
-        checks.share("within", within := checks.number("within", within))
+        within = checks.number("within", within, checks.share)
         final = 1 + self.histories[..., -1:]
         near = (1 + self.histories <= (1 + within) * final) & np.isfinite(final)
         evaluations = np.where(near.any(axis=-1), near.argmax(axis=-1) + 1, self.histories.shape[-1])
@@ -353,12 +353,7 @@ def compare_planners(
 
 def checked_seeds(seeds: Iterable[int]) -> list[int]:
     """Whole numbers, all different: the same run twice would narrow an interval."""
-    if isinstance(seeds, str | Mapping) or not isinstance(seeds, Iterable):
-        raise ValueError(f"seeds must be whole numbers, such as range(10), got {seeds!r:.60}")
-    several = list(seeds)
-    for seed in several:
-        if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-            raise ValueError(f"seeds must be whole numbers of at least 0, such as range(10), got {seed!r:.60} in them")
+    several = checks.seeds("seeds", seeds)
     if not several:
         raise ValueError("seeds must hold at least 1, got 0")
     if len(set(several)) < len(several):

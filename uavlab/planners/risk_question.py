@@ -13,7 +13,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.bounds import rounding_of
-from uavlab.city.extent import check_heights
+from uavlab.city.extent import checked_heights
 from uavlab.compiled import compiled
 from uavlab.planners.grid import LENGTHS, MOVES
 from uavlab.planners.question import Airspace, Ends, endpoints
@@ -151,12 +151,11 @@ def checked_limits(
     """A planner's arguments as limits; `min_height` is the map's by default."""
     checks.instance("risk_map", risk_map, RiskMap)
     min_clearance = checks.not_negative_number("min_clearance", min_clearance)
-    max_turn, max_pitch = checks.number("max_turn", max_turn), checks.number("max_pitch", max_pitch)
-    for name, angle, most in (("max_turn", max_turn, np.pi), ("max_pitch", max_pitch, np.pi / 2)):
-        checks.within(name, angle, 0.0, most + 1e-9, "rad (from degrees: numpy.radians)")
-    lowest = risk_map.min_height if min_height is None else min_height
-    check_heights(lowest, max_height)
-    return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, float(lowest), float(max_height))
+    radians = "rad (from degrees: numpy.radians)"
+    max_turn = checks.number("max_turn", max_turn, checks.within, 0.0, np.pi + 1e-9, radians)
+    max_pitch = checks.number("max_pitch", max_pitch, checks.within, 0.0, np.pi / 2 + 1e-9, radians)
+    heights = checked_heights(risk_map.min_height if min_height is None else min_height, max_height)
+    return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, *heights)
 
 
 def checked_length(max_length: float | None) -> float:

@@ -118,7 +118,7 @@ def theta_star(
     <Route by A* + shortcut: 135.5 m, 5 waypoints>
     """
     began = time.perf_counter()
-    checks.at_least_one("weight", weight := checks.number("weight", weight))
+    weight = checks.number("weight", weight, checks.at_least_one)
     taut = checks.flag("taut", taut)
     airspace = Airspace(city, min_clearance, min_height, max_height)
     ends = endpoints(airspace, start, goal)

@@ -245,9 +245,7 @@ def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
     flown = {name: flight for name, flight in named_flights(flights).items() if len(flight.log)}
     if not 1 <= len(flown) <= len(CONVERGENCE_STYLES):
         raise ValueError(f"flights must hold one to {len(CONVERGENCE_STYLES)} that flew, got {len(flown)}")
-    limits = {name: checks.number(name, limit) for name, limit in limits.items()}
-    for name, limit in limits.items():
-        checks.finite(name, limit)
+    limits = {name: checks.number(name, limit, checks.finite) for name, limit in limits.items()}
     figure, panels = plt.subplots(3, 1, figsize=(8.6, 6.4), dpi=DPI, sharex=True, layout="constrained")
     quantities = ("across", "offset across the route,\nleft is positive [m]"), ("speed", "speed over ground\n[m/s]")
     for axes, (column, label) in zip(panels, (*quantities, ("thrust", "thrust [N]")), strict=True):

@@ -93,7 +93,7 @@ def still(
     planned = drawn_routes(city, routes, risk)
     named = named_flights(flights)
     for name, angle in (("elevation_deg", elevation_deg), ("azimuth_deg", azimuth_deg)):
-        checks.finite(name, checks.number(name, angle))
+        checks.number(name, angle, checks.finite)
     figure = plt.figure(figsize=(7.2, 5.4), dpi=DPI)
     axes: Any = figure.add_axes((0, 0.04, 1, 0.9), projection="3d", computed_zorder=False)
     low, high = city.bounds

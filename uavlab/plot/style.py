@@ -213,8 +213,7 @@ def draw_map(axes: Axes, city: City, values: npt.ArrayLike, colors, **limits):
         raise ValueError(f"colors must be a colour map of matplotlib or the name of one, got {colors!r:.60}")
     for name in ("vmin", "vmax"):
         if limits.get(name) is not None:
-            limits[name] = checks.number(name, limits[name])
-            checks.finite(name, limits[name])
+            limits[name] = checks.number(name, limits[name], checks.finite)
     (west, south, _), (east, north, _) = city.bounds
     axes.set(xlabel="x, east [m]", ylabel="y, north [m]", aspect="equal")
     return axes.imshow(shown.T, origin="lower", extent=(west, east, south, north), cmap=colors, **limits)

@@ -66,11 +66,10 @@ class Setting:
     real_weather: bool = False
 
     def __post_init__(self) -> None:
-        for name in ("noise", "wind_scale", "wind_shape"):
-            object.__setattr__(self, name, checks.positive_number(name, getattr(self, name)))
+        checks.set_fields(self, checks.positive_number, "noise", "wind_scale", "wind_shape")
         object.__setattr__(self, "channelling", checked_channelling(self.channelling))
-        object.__setattr__(self, "class_count", checks.whole("class_count", self.class_count, 2))
-        object.__setattr__(self, "real_weather", checks.flag("real_weather", self.real_weather))
+        checks.set_fields(self, checks.whole, "class_count", least=2)
+        checks.set_fields(self, checks.flag, "real_weather")
 
 
 SETTINGS: Mapping[str, Setting] = {

@@ -103,8 +103,8 @@ def median_offsets(
     [7.5, 1.9]
     """
     checks.instance("uav", uav, UAV)
-    street_axis_deg, channelling = checks.number("street_axis_deg", street_axis_deg), checked_channelling(channelling)
-    checks.finite("street_axis_deg", street_axis_deg)
+    street_axis_deg = checks.number("street_axis_deg", street_axis_deg, checks.finite)
+    channelling = checked_channelling(channelling)
     height_factor = checks.positive_number("height_factor", height_factor)
     convective_wind = checks.positive_number("convective_wind", convective_wind)
     stiffness = checks.positive_number("stiffness", stiffness)

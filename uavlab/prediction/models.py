@@ -233,8 +233,7 @@ def compare_models(
     True
     """
     pandas = require("pandas", "prediction")
-    listed = enumerate(checks.several("seeds", seeds, object, least=0))
-    seeds = [checks.whole(f"seeds[{number}]", seed, 0, most=2**64) for number, seed in listed]
+    seeds = checks.seeds("seeds", seeds)
     if len(seeds) < 2 or len(set(seeds)) < len(seeds):  # the same data twice would narrow the interval
         raise ValueError(f"seeds must be at least 2 and all different, got {seeds}")
     setting, models = known_setting(setting), checks.by_name("models", models)

@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
+from uavlab.files import written_whole
 from uavlab.prediction.generator import (
     FEATURES,
     checked_columns,
@@ -111,8 +112,8 @@ class OffsetPredictor:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "features", checked_names(self.features))
-        object.__setattr__(self, "class_count", checks.whole("class_count", self.class_count, 2))
-        object.__setattr__(self, "quantile", checks.number("quantile", self.quantile))
+        checks.set_fields(self, checks.whole, "class_count", least=2)
+        checks.set_fields(self, checks.number, "quantile")
         if not 0.5 <= self.quantile < 1:
             raise ValueError(f"quantile must be from 0.5 to below 1, got {self.quantile!r}")
         if self.training is not None:
@@ -437,7 +438,8 @@ class OffsetPredictor:
         booster.set_attr(**{ATTRIBUTE: json.dumps(known)})
         known["fingerprint"] = fingerprint(json.loads(booster.save_raw("json")))
         booster.set_attr(**{ATTRIBUTE: json.dumps(known)})
-        path.write_bytes(booster.save_raw("json"))
+        with written_whole(path) as part:
+            part.write_bytes(booster.save_raw("json"))
 
     @classmethod
     def load(cls, path: str | PathLike[str], features: tuple[str, ...] = FEATURES) -> OffsetPredictor:

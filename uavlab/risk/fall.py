@@ -215,8 +215,7 @@ def wreck_path(uav: UAV, speed: float | None, pitch: float, depth: float, air_de
 
     checks.instance("uav", uav, UAV)
     speed = checks.not_negative_number("speed", uav.cruise_speed if speed is None else speed)
-    pitch = checks.number("pitch", pitch)
-    checks.within("pitch", pitch, -np.pi / 2, np.pi / 2, "rad (from degrees: numpy.radians)")
+    pitch = checks.number("pitch", pitch, checks.within, -np.pi / 2, np.pi / 2, "rad (from degrees: numpy.radians)")
     motion, enough = fall_motion(uav, speed, depth, air_density)
 
     def landing(_: float, state: np.ndarray) -> float:

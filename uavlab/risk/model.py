@@ -88,9 +88,7 @@ class RiskMap:
         check_density(self.population_density)
         checks.within("shelter", self.shelter, 0.0, 1.0, "(0 none, 1 industry)")
         checks.within("vehicle_share", self.vehicle_share, 0.0, 1.0, "of the ground")
-        for name in ("safe_height", "min_height"):
-            checks.not_negative_number(name, getattr(self, name))
-        checks.as_floats(self, "safe_height", "min_height")
+        checks.set_fields(self, checks.not_negative_number, "safe_height", "min_height")
         checks.flag("as_printed", self.as_printed)
 
     def __repr__(self) -> str:

@@ -117,9 +117,7 @@ def allowed_speed(curvature: npt.ArrayLike, bank: float = BANK) -> np.ndarray:
 
 
 def checked_bank(bank: float) -> float:
-    bank = checks.number("bank", bank)
-    checks.within("bank", bank, 1e-6, np.pi / 2 - 1e-6, "rad (from degrees: numpy.radians)")
-    return bank
+    return checks.number("bank", bank, checks.within, 1e-6, np.pi / 2 - 1e-6, "rad (from degrees: numpy.radians)")
 
 
 def checked_step(step: float, control: np.ndarray) -> float:
@@ -195,23 +193,21 @@ class Curve:
     safe_height: float = 0.0
 
     def __post_init__(self) -> None:
-        promises = {name: checks.number(name, getattr(self, name)) for name in PROMISES}
+        checks.set_fields(self, checks.number, *PROMISES)
+        check_promises(self)
         control = checks.numbers("control", self.control).copy()
-        ends = checks.one_of("ends", self.ends, ("phantom", "clamped"))
-        checked_count(control, ends)
-        control = checks.array("control", control, None, 3)
-        step = checked_step(self.step, control)
-        takeoff, landing = (checks.whole(name, getattr(self, name), 0) for name in ("takeoff", "landing"))
-        if takeoff + landing > len(control) - 2:
+        checks.set_fields(self, checks.one_of, "ends", known=("phantom", "clamped"))
+        checked_count(control, self.ends)
+        object.__setattr__(self, "control", checks.array("control", control, None, 3))
+        object.__setattr__(self, "step", checked_step(self.step, control))
+        checks.set_fields(self, checks.whole, "takeoff", "landing", least=0)
+        if self.takeoff + self.landing > len(control) - 2:
             raise ValueError(
                 f"takeoff and landing must leave a segment between {len(control)} control points, "
-                f"got {takeoff} and {landing}"
+                f"got {self.takeoff} and {self.landing}"
             )
-        planner, info = checks.text("planner", self.planner), checks.by_name("info", self.info, least=0)
-        checked = {"control": control, "ends": ends, "step": step, "planner": planner, "info": info, **promises}
-        for name, value in {**checked, "takeoff": takeoff, "landing": landing}.items():
-            object.__setattr__(self, name, value)
-        check_promises(self)
+        checks.set_fields(self, checks.text, "planner")
+        checks.set_fields(self, checks.by_name, "info", least=0)
 
     def __repr__(self) -> str:
         return f"<Curve by {self.planner}: {self.length:.1f} m, {len(self.control)} control points>"

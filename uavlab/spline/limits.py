@@ -15,7 +15,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.bounds import slack_of
-from uavlab.city.extent import check_heights
+from uavlab.city.extent import checked_heights
 from uavlab.route import promises_of
 from uavlab.spline.curve import BANK, CONTACT, Curve, checked_bank, curvature
 from uavlab.vehicle import GRAVITY, UAV
@@ -255,7 +255,7 @@ def feasibility(
     max_pitch = checked_angle("max_pitch", max_pitch, np.pi / 2)
     checks.one_of("reading", reading, ("plan", "space"))
     whole, curve = curve, curve.en_route
-    heights = checked_heights(curve, min_height, max_height, safe_height)
+    heights = heights_kept(curve, min_height, max_height, safe_height)
     least = max((1 - CONTACT) * uav.diameter / 2, curve.min_clearance - slack_of(city) * city.cell)
     least = checks.not_negative_number("min_clearance", least if min_clearance is None else min_clearance)
     begins = float(whole.distance[np.searchsorted(whole.parameter, whole.takeoff)])
@@ -294,14 +294,13 @@ def checked_angle(name: str, angle: float, most: float) -> float:
     return angle
 
 
-def checked_heights(
+def heights_kept(
     curve: Curve, min_height: float | None, max_height: float | None, safe_height: float | None
 ) -> tuple[float, float, float]:
     """`min_height`, `max_height` and `safe_height`, by default what the curve promises."""
     asked = promises_of(curve, min_height=min_height, max_height=max_height, safe_height=safe_height)
-    check_heights(asked["min_height"], asked["max_height"])
-    safe_height = checks.not_negative_number("safe_height", asked["safe_height"])
-    return asked["min_height"], asked["max_height"], safe_height
+    heights = checked_heights(asked["min_height"], asked["max_height"])
+    return *heights, checks.not_negative_number("safe_height", asked["safe_height"])
 
 
 def limits_of_place(

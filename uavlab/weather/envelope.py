@@ -169,8 +169,7 @@ def mean_wind_limit(
     [14.5, 13.0, 3.0]
     """
     ground_speed = checks.not_negative_number("ground_speed", ground_speed)
-    gust_factor = checks.number("gust_factor", gust_factor)
-    checks.at_least_one("gust_factor", gust_factor)
+    gust_factor = checks.number("gust_factor", gust_factor, checks.at_least_one)
     gust = wind_limit(uav, rain, air_density=air_density, safety_factor=safety_factor)
     against = np.maximum(np.minimum(gust, uav.top_speed) - ground_speed, 0.0)
     return np.minimum(gust / gust_factor, against)
@@ -216,8 +215,8 @@ def air_speed_held(uav: UAV, rain: float = 0.0, *, air_density: float = STANDARD
     """
     checks.instance("uav", uav, UAV)
     rain = checks.not_negative_number("rain", rain)
-    air_density, share = checks.positive_number("air_density", air_density), checks.number("share", share)
-    checks.within("share", share, 0.0, 1.0, "of the reserve")
+    air_density = checks.positive_number("air_density", air_density)
+    share = checks.number("share", share, checks.within, 0.0, 1.0, "of the reserve")
     return steady_air_speed(uav, rain, air_density, share)
 
 

@@ -7,7 +7,7 @@ meteorologist's direction, in `Weather`, is where the wind comes from.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -89,11 +89,10 @@ class Weather:
     radiation: float = 0.0
 
     def __post_init__(self) -> None:
-        for item in fields(self):
-            object.__setattr__(self, item.name, checks.number(item.name, getattr(self, item.name)))
+        checks.set_fields(self, checks.number, "temperature_c", "humidity_percent", "pressure_hpa", "wind_from_deg")
         checks.air(self.temperature_c, self.humidity_percent, self.pressure_hpa)
-        for name in ("forecast_wind", "forecast_max_wind", "measured_wind", "rain_mm_per_h", "radiation"):
-            checks.not_negative(name, getattr(self, name))
+        winds = "forecast_wind", "forecast_max_wind", "measured_wind"
+        checks.set_fields(self, checks.not_negative_number, *winds, "rain_mm_per_h", "radiation")
         checks.within("wind_from_deg", self.wind_from_deg, 0.0, 360.0, "degrees")
 
     def __repr__(self) -> str:
@@ -245,8 +244,8 @@ def rain_force(
     """
     checks.not_negative("rain_mm_per_h", rain_mm_per_h)
     area, drop_speed = checks.positive_number("area", area), checks.positive_number("drop_speed", drop_speed)
-    restitution = checks.number("restitution", restitution)
-    checks.within("restitution", restitution, 0.0, 1.0, "(0: drops stick, 1: they bounce back)")
+    sticking = "(0: drops stick, 1: they bounce back)"
+    restitution = checks.number("restitution", restitution, checks.within, 0.0, 1.0, sticking)
     pressure = WATER_DENSITY * np.asarray(rain_mm_per_h, dtype=float) / 3.6e6 * drop_speed
     return pressure * restitution if checks.flag("as_printed", as_printed) else pressure * area * (1.0 + restitution)
 
@@ -345,8 +344,7 @@ def reference_wind(
     forecast_mean = checks.not_negative_number("forecast_mean", forecast_mean)
     measured_mean = checks.not_negative_number("measured_mean", measured_mean)
     forecast_max = checks.not_negative_number("forecast_max", forecast_max)
-    gust_factor = checks.number("gust_factor", gust_factor)
-    checks.at_least_one("gust_factor", gust_factor)
+    gust_factor = checks.number("gust_factor", gust_factor, checks.at_least_one)
     mean = max(forecast_mean, measured_mean)
     return ReferenceWind(mean, mean if checks.flag("as_printed", as_printed) else max(forecast_max, gust_factor * mean))
 

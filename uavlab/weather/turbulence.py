@@ -91,8 +91,9 @@ def dryden_parameters(altitude: float, wind_at_6m: float) -> DrydenParameters:
     >>> f"σ along {low.deviations[0]:.2f} m/s at 10 m, {high.deviations[0]:.2f} m/s at 100 m"
     'σ along 1.89 m/s at 10 m, 1.38 m/s at 100 m'
     """
-    altitude, wind_at_6m = checks.number("altitude", altitude), checks.not_negative_number("wind_at_6m", wind_at_6m)
-    checks.within("altitude", altitude, LOWEST, HIGHEST, "m, the low-altitude range of MIL-F-8785C")
+    metres = "m, the low-altitude range of MIL-F-8785C"
+    altitude = checks.number("altitude", altitude, checks.within, LOWEST, HIGHEST, metres)
+    wind_at_6m = checks.not_negative_number("wind_at_6m", wind_at_6m)
     feet = altitude / FOOT
     shape = 0.177 + 0.000823 * feet
     horizontal = altitude / shape**1.2

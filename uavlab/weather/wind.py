@@ -73,12 +73,10 @@ class Wind:
     air_density: float = STANDARD_AIR
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mean", checks.three("mean", self.mean))
-        object.__setattr__(self, "gusts", str(checks.one_of("gusts", self.gusts, GUSTS)))
-        for name in ("deviation", "rain_mm_per_h"):
-            object.__setattr__(self, name, checks.not_negative_number(name, getattr(self, name)))
-        for name in ("correlation", "air_density"):
-            object.__setattr__(self, name, checks.positive_number(name, getattr(self, name)))
+        checks.set_fields(self, checks.three, "mean")
+        checks.set_fields(self, checks.one_of, "gusts", known=GUSTS)
+        checks.set_fields(self, checks.not_negative_number, "deviation", "rain_mm_per_h")
+        checks.set_fields(self, checks.positive_number, "correlation", "air_density")
         if self.gusts == "dryden" and not any(self.mean[:2]):
             raise ValueError("mean is calm, and Dryden gusts take their strength from it: give a wind, or other gusts")
 
@@ -144,11 +142,11 @@ class Wind:
         return float(np.linalg.norm(self.mean))
 
 
-def wind_of(disturbance: Wind | Weather) -> Wind:
-    """A wind, or that of a state of the weather."""
+def wind_of(disturbance: Wind | Weather, name: str = "disturbance") -> Wind:
+    """A wind, or that of a state of the weather; `name` is that of the argument."""
     if isinstance(disturbance, Weather):
         return Wind.from_weather(disturbance)
-    checks.instance("disturbance", disturbance, Wind)
+    checks.instance(name, disturbance, Wind)
     return disturbance
 
 
