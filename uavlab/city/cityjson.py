@@ -24,6 +24,7 @@ from uavlab.city.model import City
 from uavlab.city.place import (
     FARTHEST_LOCAL,
     NOWHERE,
+    UNKNOWN,
     Place,
     System,
     check_extent,
@@ -160,7 +161,7 @@ def read_cityjson(
     if terrain is not None or relief:  # else it goes through the feet
         solids = grounded(solids, ground, notes)
     buildings = [solid_of(pieces, thing, notes) for thing, pieces in solids]
-    source = notes.source(path.name, "CityJSON")
+    source = notes.source(path.name, "CityJSON", UNKNOWN if system is None else system.heights)
     city = City.from_buildings(
         buildings, cell=cell, margin=margin, name=path.name.split(".")[0], reference=place, source=source,
         terrain=ground, voxels=voxels, no_fly=no_fly,

@@ -42,7 +42,7 @@ from uavlab.city.footprints import (
 from uavlab.city.heights import Wording, above_ground, above_sea, heights_of
 from uavlab.city.model import City
 from uavlab.city.parts import overridden_by_parts
-from uavlab.city.place import NOWHERE, System, metres_per, system_for
+from uavlab.city.place import ABOVE_SEA, NOWHERE, UNKNOWN, System, metres_per, system_for
 from uavlab.city.rasters import terrain_or_file
 from uavlab.city.source import FIRST, Notes
 from uavlab.city.terrain import Terrain
@@ -195,7 +195,7 @@ def read_geojson(
         ground = ground_below(blocks, from_sea, terrain, place)
     extents = extents_of(blocks, from_sea, ground, zero, notes)
     buildings = buildings_of(blocks, extents, notes)
-    source = notes.source(path.name, "GeoJSON")
+    source = notes.source(path.name, "GeoJSON", ABOVE_SEA if from_sea else UNKNOWN)
     city = City.from_buildings(
         buildings, cell=cell, margin=margin, name=path.name.split(".")[0], reference=place, source=source,
         terrain=ground, voxels=voxels, no_fly=no_fly,

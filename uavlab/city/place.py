@@ -41,6 +41,11 @@ UNITS = {
 """Metres per unit of length."""
 
 
+ABOVE_SEA, ELLIPSOIDAL, UNKNOWN = "above sea", "ellipsoidal", "unknown"
+"""What heights of a city may be: orthometric, as on maps; above the ellipsoid, as GPS itself has them, up to 100 m more
+or less; or not said."""
+
+
 class Geographic(NamedTuple):
     """Three coordinates."""
 
@@ -214,6 +219,7 @@ class System:
         parts = crs.sub_crs_list if crs.is_compound else [crs.to_2d() if len(crs.axis_info) > 2 else crs]
         self.horizontal = parts[0]
         self.vertical = parts[1].axis_info[0] if len(parts) > 1 else None
+        self.heights = ABOVE_SEA if len(parts) > 1 else ELLIPSOIDAL if len(crs.axis_info) > 2 else UNKNOWN
 
     def __repr__(self) -> str:
         return f"<System {self.name}>"

@@ -15,6 +15,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 
 from uavlab import checks
+from uavlab.city.place import UNKNOWN
 
 KINDS = ("taken", "mended", "derived", "assumed", "left out")
 """In the order in which they are told; the last two are doubts."""
@@ -58,6 +59,8 @@ class Source:
         Such as "GeoJSON".
     entries : tuple of Entry
         In the order of `KINDS`.
+    heights : {"above sea", "ellipsoidal", "unknown"}
+        What the height of the city's `reference` is measured from, by what the file says.
 
     See Also
     --------
@@ -80,6 +83,7 @@ class Source:
     name: str
     format: str
     entries: tuple[Entry, ...] = ()
+    heights: str = UNKNOWN
 
     def of(self, kind: str) -> tuple[Entry, ...]:
         """The entries of one kind.
@@ -218,8 +222,8 @@ class Notes:
         if name and len(self.first[entry]) < FIRST:
             self.first[entry].append(name)
 
-    def source(self, name: str, file_format: str) -> Source:
+    def source(self, name: str, file_format: str, heights: str = UNKNOWN) -> Source:
         """All notes as a report, in the order of `KINDS`, and within a kind as they came."""
         keys = sorted(self.counts, key=lambda entry: KINDS.index(entry[0]))
         entries = [Entry(*key, self.counts[key], tuple(self.first[key])) for key in keys]
-        return Source(name, file_format, tuple(entries))
+        return Source(name, file_format, tuple(entries), heights)

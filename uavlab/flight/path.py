@@ -39,8 +39,8 @@ def constant_speed(route: Route, speed: float) -> Path:
     return Path(*geometry(route), np.full(len(route.points), speed), np.full(len(route.points) - 1, speed), BRAKING)
 
 
-def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
-    """As fast as asked, but for turns, head winds, drag that the thrust holds, climb, descent and what it can brake.
+def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float | np.ndarray) -> Path:
+    """As fast as asked, everywhere or on each leg, but for turns, head winds, drag that the thrust holds, climb, descent and what it can brake.
 
     Half of what the rotors have left beside weight, rain and mean wind is for turns, half for gusts; it may bank by
     30° at most.
@@ -52,7 +52,7 @@ def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float) -> Path:
     held_there = ground_speed_held(
         uav, direction, wind.mean, rain_mm_per_h=wind.rain_mm_per_h, air_density=wind.air_density
     )
-    on_legs = np.clip(held_there, CREEP, max(speed, CREEP))
+    on_legs = np.clip(held_there, CREEP, np.maximum(speed, CREEP))
     at_points = np.full(len(points), CREEP)
     turn = np.arccos(np.clip((direction[:-1] * direction[1:]).sum(axis=1), -1.0, 1.0))
     apart = (np.diff(distance)[:-1] + np.diff(distance)[1:]) / 2

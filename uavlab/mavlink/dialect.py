@@ -1,0 +1,54 @@
+"""MAVLink's words: pymavlink's messages of version 2, and what their numbers mean."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from uavlab.requirements import require
+
+MISSION, FENCE, RALLY_POINTS, EVERYTHING = 0, 1, 2, 255
+"""Types of plans that a vehicle keeps (MAV_MISSION_TYPE)."""
+
+PLANS = {MISSION: "mission", FENCE: "fence", RALLY_POINTS: "rally points"}
+
+ACCEPTED = 0
+"""MAV_MISSION_RESULT and MAV_RESULT alike."""
+
+ARDUPILOT, PX4 = 3, 12
+"""MAV_AUTOPILOT."""
+
+ARM, START_MISSION, SET_MODE, GO_HOME, LAND_HERE, REQUEST_MESSAGE = 400, 300, 176, 20, 21, 512
+"""Commands that are sent alone (MAV_CMD)."""
+
+HOME_POSITION = 242
+"""Number of that message."""
+
+
+@cache
+def messages() -> Any:
+    """The module of pymavlink with all messages."""
+    return require("pymavlink.dialects.v20.common", "mavlink")
+
+
+def codec(system: int, component: int) -> Any:
+    """What packs messages of one sender, and reads those of others; a corrupted one becomes BAD_DATA."""
+    made = messages().MAVLink(None, srcSystem=system, srcComponent=component)
+    made.robust_parsing = True
+    return made
+
+
+def packed(codec: Any, message: Any) -> bytes:
+    """A message as it travels, with the next sequence number."""
+    data = message.pack(codec)
+    codec.seq = (codec.seq + 1) % 256
+    return data
+
+
+def name_of(enumeration: str, value: int) -> str:
+    """What a number means, in words: "MAV_MISSION_INVALID_PARAM5_X" is "invalid param5 x"."""
+    entry = messages().enums[enumeration].get(value)
+    if entry is None:
+        return f"number {value}"
+    prefix = "MAV_MISSION_" if enumeration == "MAV_MISSION_RESULT" else f"{enumeration}_"
+    return entry.name.removeprefix(prefix).replace("_", " ").lower()

@@ -1,0 +1,160 @@
+"""Few waypoints for a route of many, within a corridor that stays clear, and where to stop instead of cutting a corner.
+
+An autopilot flies straight from waypoint to waypoint and rounds each corner as soon as it is near. So a leg may replace
+a piece of the route if it stays near it and keeps what the route promises all along; and a corner may be rounded if
+what lies inside of it is clear, too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uavlab import checks
+from uavlab.city import City
+from uavlab.city.bounds import Bounds, keeps
+from uavlab.city.rasterise import bilinear
+from uavlab.spline.curve import CONTACT
+
+STOP = 1.0
+"""How long it stops where it can't round the corner [s]."""
+
+ALONG = 0.5
+"""The ground below a leg is looked at as often as this [cells]."""
+
+
+@dataclass(frozen=True)
+class Corridor:
+    """Where the legs of a mission may be, and how far from the route."""
+
+    city: City
+    bounds: Bounds
+    """Obstacles, zones and heights that they keep."""
+    width: float
+    """How far from the route [m]."""
+    follows: bool
+    """Whether they follow the ground, or are straight."""
+
+    def clear(self, start: np.ndarray, end: np.ndarray, aside: float = 0.0) -> bool:
+        """Whether a leg keeps the bounds, with so much room around it [m]."""
+        origin, cell = self.city.origin, self.city.cell
+        room = (aside + self.rise(start, end)) / cell
+        return bool(keeps(self.bounds, (start - origin) / cell, (end - origin) / cell, room, 0.0)[0])
+
+    def rise(self, start: np.ndarray, end: np.ndarray) -> float:
+        """How far a leg that follows the ground leaves the straight line, up or down [m]."""
+        if not self.follows or self.city.ground is None:
+            return 0.0
+        count = max(int(np.ceil(np.linalg.norm(end - start) / (ALONG * self.city.cell))), 1)
+        share = np.linspace(0.0, 1.0, count + 1)
+        plan = start[:2] + share[:, None] * (end - start)[:2]
+        ground = bilinear(self.city.ground, (plan - self.city.origin[:2]) / self.city.cell)
+        return float(np.abs(ground - (ground[0] + share * (ground[-1] - ground[0]))).max())
+
+    def thinned(self, points: np.ndarray) -> np.ndarray:
+        """Which of the points (N, 3) are waypoints: all others are within the corridor's width of clear legs.
+
+        Raises
+        ------
+        ValueError
+            If the route itself isn't clear, or follows the ground and its own legs are too long for that.
+        """
+        kept = {0, len(points) - 1}
+        pieces = [(0, len(points) - 1)]
+        while pieces:
+            first, last = pieces.pop()
+            if first == last:
+                continue
+            start, end = points[first], points[last]
+            inner = points[first + 1 : last]
+            apart = distance_to_leg(inner, start, end)
+            near = len(inner) == 0 or apart.max() <= self.width
+            if near and self.rise(start, end) <= self.width and self.clear(start, end):
+                continue
+            if len(inner) == 0:
+                self.refuse(first, start, end)
+            middle = first + 1 + int(np.argmax(apart)) if apart.max() > 0 else (first + last) // 2
+            kept.add(middle)
+            pieces += [(first, middle), (middle, last)]
+        return np.array(sorted(kept))
+
+    def refuse(self, number: int, start: np.ndarray, end: np.ndarray) -> None:
+        """Raise: a leg of the route itself can't be flown."""
+        between = f"between waypoints {number} {checks.show(start)} and {number + 1} {checks.show(end)}"
+        if self.follows and self.rise(start, end) > self.width:
+            raise ValueError(
+                f"route leaves the ground's slope by {self.rise(start, end):.1f} m {between}, and altitudes='terrain' "
+                f"follows it: use route.resample({max(self.city.cell, self.width):g}), or altitudes='home'"
+            )
+        apart = float(self.city.segment_distance(start, end))
+        raise ValueError(
+            f"route isn't clear {between}: {apart:.2f} m to an obstacle where it has to keep "
+            f"{self.bounds.keep * self.city.cell:.2f} m, or in a no-fly zone, too low or too high; plan it with "
+            "min_clearance, min_height and max_height that this UAV can keep"
+        )
+
+    def stops(self, points: np.ndarray, radius: float) -> np.ndarray:
+        """At which of the waypoints (N, 3) an autopilot that rounds corners by a radius [m] has to stop, (N,) bool."""
+        stops = np.zeros(len(points), dtype=bool)
+        for number in range(1, len(points) - 1):
+            before, here, after = points[number - 1 : number + 2]
+            into, out, reach = corner(before, here, after, radius)
+            aside = cut_off(into, out, reach)
+            parts = (here - reach * into, here), (here, here + reach * out)
+            stops[number] = not all(self.clear(*part, aside) for part in parts)
+        return stops
+
+
+def corner(
+    before: np.ndarray, here: np.ndarray, after: np.ndarray, radius: float
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Directions into a corner and out of it, and from how far before to how far after it is rounded [m]."""
+    into, out = here - before, after - here
+    lengths = float(np.linalg.norm(into)), float(np.linalg.norm(out))
+    return into / lengths[0], out / lengths[1], min(radius, lengths[0] / 2, lengths[1] / 2)
+
+
+def cut_off(into: np.ndarray, out: np.ndarray, reach: float) -> float:
+    """How far inside of a corner a way may lie from its legs: half the reach times the sine of the turn.
+
+    The way stays in the triangle of the corner and the ends of the reach. Of all points in it, the middle of the third
+    side is farthest from both legs. Beyond a right angle that is taken as half the reach.
+    """
+    along = float(np.clip(into @ out, -1.0, 1.0))
+    return reach / 2 * (float(np.sqrt(1 - along**2)) if along > 0 else 1.0)
+
+
+def distance_to_leg(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Distance of points (N, 3) from a straight leg [m]."""
+    if len(points) == 0:
+        return np.zeros(0)
+    leg = end - start
+    share = np.clip((points - start) @ leg / max(float(leg @ leg), 1e-30), 0.0, 1.0)
+    return np.linalg.norm(points - start - share[:, None] * leg, axis=1)
+
+
+def floor_below(city: City, point: np.ndarray) -> tuple[float, float]:
+    """What a UAV above it would land on [m]: the roof or the ground itself, and the top of the voxels that hold it."""
+    i, j, k = np.clip(city.cell_of(point), 0, np.array(city.shape) - 1)
+    below = np.flatnonzero(city.occupied[i, j, : k + 1])
+    top = float(city.origin[2] + city.cell * (below[-1] + 1)) if len(below) else float(city.origin[2])
+    return float(city.surface_below[i, j, k]), top
+
+
+def check_column(city: City, name: str, point: np.ndarray, diameter: float) -> float:
+    """Height z of what lies below a point, from where a UAV can rise to it without touching a wall [m].
+
+    Near the ground, within its own height or a voxel's, it may touch what it stands on.
+    """
+    surface, top = floor_below(city, point)
+    low = np.array([*point[:2], top + max(diameter, city.cell)])
+    if low[2] < point[2]:
+        apart = float(city.segment_distance(low, point))
+        if apart < (1 - CONTACT) * diameter / 2:
+            raise ValueError(
+                f"{name} at {checks.show(point)}: between it and what lies below, {point[2] - surface:.1f} m deeper, a "
+                f"wall is {apart:.2f} m away, and a UAV of {diameter:g} m needs {diameter / 2:g} m: begin and end a "
+                "route where it can rise and land"
+            )
+    return surface

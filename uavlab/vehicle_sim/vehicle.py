@@ -1,0 +1,432 @@
+"""The vehicle's side of MAVLink: what it answers to a ground station, and what it says of itself.
+
+It behaves as PX4 and ArduPilot do for missions: it asks for each item, again where an answer is lost; takes a mission
+whole or not at all, from one ground station at a time; says which item it doesn't take; and asks its fence before it
+flies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from uavlab.mavlink.coding import item_of, message_of, polygons_of
+from uavlab.mavlink.dialect import (
+    ACCEPTED,
+    ARDUPILOT,
+    ARM,
+    EVERYTHING,
+    FENCE,
+    GO_HOME,
+    HOME_POSITION,
+    LAND_HERE,
+    MISSION,
+    PLANS,
+    PX4,
+    RALLY_POINTS,
+    REQUEST_MESSAGE,
+    SET_MODE,
+    START_MISSION,
+    codec,
+    messages,
+    packed,
+)
+from uavlab.mission.items import (
+    CHANGE_SPEED,
+    COMMANDS,
+    EXCLUDE,
+    FRAMES,
+    INCLUDE,
+    PLACED,
+    RALLY,
+    SEA,
+    WAYPOINT,
+    Item,
+)
+from uavlab.vehicle_sim.pilot import CRASHED, FLYING_MISSION, HOLDING, LANDING, READY, RETURNING, TICK, Pilot
+
+SYSTEM, COMPONENT = 1, 1
+MOST_ITEMS = 1000
+"""That it has room for, as many autopilots."""
+
+ASK_AGAIN, GIVE_UP = 0.25, 12
+"""An item that doesn't come is asked for again after so many seconds, so many times."""
+
+UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE, INVALID, INVALID_SEQUENCE, DENIED, CANCELLED = 2, 3, 4, 5, 13, 14, 15
+"""Answers of the mission protocol (MAV_MISSION_RESULT)."""
+
+INVALID_PLACE, INVALID_ALTITUDE = 10, 12
+COMMAND_DENIED, COMMAND_UNKNOWN, TEMPORARILY_REJECTED = 2, 3, 1
+"""Of commands (MAV_RESULT)."""
+
+PX4_SUBMODES = {READY: 3, FLYING_MISSION: 4, HOLDING: 3, RETURNING: 5, LANDING: 6, CRASHED: 6}
+ARDUPILOT_MODES = {READY: 5, FLYING_MISSION: 3, HOLDING: 5, RETURNING: 6, LANDING: 9, CRASHED: 9}
+"""Numbers of what it does."""
+
+PX4_AUTO = 4
+"""PX4's main mode of all these."""
+
+VERSION = 148
+"""Number of the message that says what an autopilot can do."""
+
+CAN = 4 | 8 | 8192 | 16384 | 32768
+"""Missions and commands as whole numbers, MAVLink 2, fences, rally points (MAV_PROTOCOL_CAPABILITY)."""
+
+FENCE_RETURNS = {ARDUPILOT: 1.0, PX4: 3.0}
+"""Value of the parameter by which who leaves the fence goes home; with others it only says so."""
+
+Peer = tuple[str, int]
+
+
+@dataclass
+class Upload:
+    """A mission that is on its way to the vehicle."""
+
+    peer: Peer
+    sender: tuple[int, int]
+    kind: int
+    count: int
+    items: list[Item] = field(default_factory=list)
+    asked: float = 0.0
+    tries: int = 0
+
+
+class Vehicle:
+    """A pilot with a radio; time `now` is given in seconds of any clock that goes on."""
+
+    def __init__(self, pilot: Pilot, autopilot: int, send: Callable[[bytes, Peer | None], None]) -> None:
+        self.pilot, self.autopilot, self.send = pilot, autopilot, send
+        self.codec, self.reader = codec(SYSTEM, COMPONENT), {}
+        self.plans: dict[int, list[Item]] = {kind: [] for kind in PLANS}
+        self.upload: Upload | None = None
+        self.done: tuple[Peer, int, int] | None = None
+        self.ticks = 0
+        self.told_item = -1
+        self.flying_time = 0.0
+        self.parameters = self.usual_parameters()
+
+    def usual_parameters(self) -> dict[str, float]:
+        """Names and values as those of the autopilot that it is."""
+        if self.autopilot == ARDUPILOT:
+            return {"RTL_ALT": 100 * self.pilot.return_height, "FENCE_ACTION": FENCE_RETURNS[ARDUPILOT]}
+        return {"RTL_RETURN_ALT": self.pilot.return_height, "GF_ACTION": FENCE_RETURNS[PX4]}
+
+    def receive(self, data: bytes, peer: Peer, now: float) -> None:
+        """A packet; what is no MAVLink, or not for it, is ignored."""
+        reader = self.reader.setdefault(peer, codec(SYSTEM, COMPONENT))
+        for message in reader.parse_buffer(data) or []:
+            if message.get_type() == "BAD_DATA":
+                continue
+            if getattr(message, "target_system", SYSTEM) in (0, SYSTEM):
+                handler = getattr(self, f"on_{message.get_type().lower()}", None)
+                if handler is not None:
+                    handler(message, peer, now)
+
+    def answer(self, message: Any, peer: Peer | None) -> None:
+        self.send(packed(self.codec, message), peer)
+
+    def acknowledge(self, message: Any, peer: Peer, kind: int, result: int) -> None:
+        sender = message.get_srcSystem(), message.get_srcComponent()
+        self.answer(messages().MAVLink_mission_ack_message(*sender, result, kind), peer)
+
+    def on_mission_count(self, message: Any, peer: Peer, now: float) -> None:
+        kind, sender = message.mission_type, (message.get_srcSystem(), message.get_srcComponent())
+        if kind not in PLANS:
+            self.acknowledge(message, peer, kind, UNSUPPORTED)
+        elif self.upload is not None and (self.upload.peer, self.upload.sender) != (peer, sender):
+            self.acknowledge(message, peer, kind, DENIED)  # another ground station is at it
+        elif kind == MISSION and self.pilot.armed:
+            self.acknowledge(message, peer, kind, DENIED)
+        elif message.count > MOST_ITEMS:
+            self.acknowledge(message, peer, kind, NO_SPACE)
+        elif message.count == 0:
+            self.take(kind, [])
+            self.acknowledge(message, peer, kind, ACCEPTED)
+        elif self.upload is None or (self.upload.kind, self.upload.count) != (kind, message.count):
+            self.upload = Upload(peer, sender, kind, message.count)
+            self.ask(now)
+        else:
+            self.ask(now)  # it didn't hear the question
+
+    def on_mission_item_int(self, message: Any, peer: Peer, now: float) -> None:
+        upload = self.upload
+        if upload is None or upload.peer != peer:
+            if self.done == (peer, message.mission_type, message.seq):  # it didn't hear that all is well
+                self.acknowledge(message, peer, message.mission_type, ACCEPTED)
+            return
+        if message.mission_type != upload.kind:
+            return
+        if message.seq != len(upload.items):
+            if message.seq > len(upload.items):
+                self.ask(now)
+            return
+        result, item = self.judged(message, upload.kind)
+        if item is None:
+            self.upload = None
+            self.acknowledge(message, peer, message.mission_type, result)
+            return
+        upload.items.append(item)
+        upload.tries = 0
+        if len(upload.items) < upload.count:
+            self.ask(now)
+            return
+        self.upload = None
+        if self.take(upload.kind, upload.items):
+            self.done = (peer, upload.kind, message.seq)
+            self.acknowledge(message, peer, upload.kind, ACCEPTED)
+        else:
+            self.acknowledge(message, peer, upload.kind, INVALID)
+
+    def judged(self, message: Any, kind: int) -> tuple[int, Item | None]:
+        """An item, or None and why it isn't taken."""
+        known = {MISSION: tuple(COMMANDS), FENCE: (INCLUDE, EXCLUDE), RALLY_POINTS: (RALLY,)}[kind]
+        if message.command not in known:
+            return UNSUPPORTED, None
+        try:
+            item = item_of(message)
+        except ValueError as error:
+            return INVALID_ALTITUDE if "altitude" in str(error) else INVALID_PLACE, None
+        placed = kind != MISSION or item.command in PLACED
+        if placed and item.frame not in FRAMES.values():
+            return UNSUPPORTED_FRAME, None
+        if item.command == CHANGE_SPEED and not item.parameters[1] > 0:
+            return INVALID + 2, None
+        if item.command == WAYPOINT and item.parameters[0] < 0:
+            return INVALID + 1, None
+        return ACCEPTED, item
+
+    def take(self, kind: int, items: list[Item]) -> bool:
+        """Keep a plan, and use it; whether it could."""
+        try:
+            if kind == FENCE:
+                self.pilot.watch(polygons_of(items))
+            elif kind == RALLY_POINTS:
+                self.pilot.rally = tuple(self.pilot.point_of(item) for item in items)
+            else:
+                self.pilot.take(tuple(items[int(self.autopilot == ARDUPILOT) :]))
+        except ValueError:
+            return False
+        self.plans[kind] = items
+        return True
+
+    def ask(self, now: float) -> None:
+        """Ask for the next item."""
+        upload = self.upload
+        assert upload is not None
+        upload.asked = now
+        request = messages().MAVLink_mission_request_int_message(*upload.sender, len(upload.items), upload.kind)
+        self.answer(request, upload.peer)
+
+    def on_mission_request_list(self, message: Any, peer: Peer, now: float) -> None:
+        sender = message.get_srcSystem(), message.get_srcComponent()
+        count = len(self.kept(message.mission_type))
+        self.answer(messages().MAVLink_mission_count_message(*sender, count, message.mission_type), peer)
+
+    def on_mission_request_int(self, message: Any, peer: Peer, now: float) -> None:
+        sender, items = (message.get_srcSystem(), message.get_srcComponent()), self.kept(message.mission_type)
+        if message.seq < len(items):
+            self.answer(message_of(items[message.seq], message.seq, message.mission_type, sender), peer)
+        else:
+            self.acknowledge(message, peer, message.mission_type, INVALID_SEQUENCE)
+
+    on_mission_request = on_mission_request_int
+
+    def kept(self, kind: int) -> list[Item]:
+        """A plan as it is asked for; ArduPilot's missions begin with home, whatever was sent."""
+        items = self.plans.get(kind, [])
+        if kind == MISSION and self.autopilot == ARDUPILOT and items:
+            longitude, latitude, height = self.geographic(self.pilot.home)
+            return [Item(WAYPOINT, SEA, (0.0, 0.0, 0.0, 0.0), latitude, longitude, height), *items[1:]]
+        return items
+
+    def on_mission_clear_all(self, message: Any, peer: Peer, now: float) -> None:
+        kinds = tuple(PLANS) if message.mission_type == EVERYTHING else (message.mission_type,)
+        busy = self.upload is not None and self.upload.peer != peer
+        if busy or (self.pilot.armed and MISSION in kinds):
+            self.acknowledge(message, peer, message.mission_type, DENIED)
+            return
+        self.upload = None
+        for kind in kinds:
+            self.take(kind, [])
+        self.acknowledge(message, peer, message.mission_type, ACCEPTED)
+
+    def on_mission_ack(self, message: Any, peer: Peer, now: float) -> None:
+        """A ground station gives up what it began to send."""
+        if self.upload is not None and self.upload.peer == peer and message.type != ACCEPTED:
+            self.upload = None
+
+    def on_param_set(self, message: Any, peer: Peer, now: float) -> None:
+        if message.param_id in self.parameters and np.isfinite(message.param_value):
+            self.parameters[message.param_id] = message.param_value
+            height, action = self.parameters.values()
+            self.pilot.return_height = height / (100.0 if self.autopilot == ARDUPILOT else 1.0)
+            self.pilot.fence_returns = action == FENCE_RETURNS[self.autopilot]
+            self.say_parameter(message.param_id, peer)
+
+    def on_param_request_list(self, message: Any, peer: Peer, now: float) -> None:
+        for name in self.parameters:
+            self.say_parameter(name, peer)
+
+    def on_param_request_read(self, message: Any, peer: Peer, now: float) -> None:
+        names = list(self.parameters)
+        name = names[message.param_index] if 0 <= message.param_index < len(names) else message.param_id
+        if name in self.parameters:
+            self.say_parameter(name, peer)
+
+    def say_parameter(self, name: str, peer: Peer) -> None:
+        number, count = list(self.parameters).index(name), len(self.parameters)
+        value = self.parameters[name]
+        self.answer(messages().MAVLink_param_value_message(name.encode(), value, 9, count, number), peer)
+
+    def on_command_long(self, message: Any, peer: Peer, now: float) -> None:
+        """Do what is told; the answer says whether, a text why not."""
+        result = self.obeyed(message, peer)
+        for words in self.spoken():
+            self.answer(words, None)
+        ack = messages().MAVLink_command_ack_message(
+            message.command, result, 255, 0, message.get_srcSystem(), message.get_srcComponent()
+        )
+        self.answer(ack, peer)
+
+    on_command_int = on_command_long
+
+    def obeyed(self, message: Any, peer: Peer) -> int:
+        pilot, first = self.pilot, message.param1
+        if message.command == ARM:
+            return self.armed(first, message.param2)
+        if message.command == START_MISSION:
+            return self.told(pilot.start())
+        if message.command == GO_HOME:
+            return self.told(pilot.go_home())
+        if message.command == LAND_HERE:
+            return self.told(pilot.land_here())
+        if message.command == SET_MODE:
+            return self.mode_set(int(message.param2), int(message.param3))
+        if message.command == REQUEST_MESSAGE and first in (HOME_POSITION, VERSION):
+            self.answer(self.home_position() if first == HOME_POSITION else self.version(), peer)
+            return ACCEPTED
+        return COMMAND_UNKNOWN
+
+    def armed(self, wanted: float, force: float) -> int:
+        """Motors on; or off, which in flight needs to be forced, and then it falls."""
+        pilot = self.pilot
+        if wanted == 1:
+            return self.told(pilot.arm())
+        if pilot.body.path is not None:
+            return self.told("it is flying")
+        pilot.armed = False
+        return ACCEPTED
+
+    def mode_set(self, main: int, sub: int) -> int:
+        """A mode by its number; on the ground only that of a mission makes a difference."""
+        known = ARDUPILOT_MODES if self.autopilot == ARDUPILOT else PX4_SUBMODES
+        number = main if self.autopilot == ARDUPILOT else sub if main == PX4_AUTO else -1
+        wanted = [mode for mode, at in known.items() if at == number and mode not in (READY, CRASHED)]
+        actions = {HOLDING: self.pilot.hold, RETURNING: self.pilot.go_home, LANDING: self.pilot.land_here}
+        if not wanted:
+            return self.told(f"no mode {main}, {sub}")
+        if wanted[0] == FLYING_MISSION:
+            return self.told(self.pilot.start())
+        return ACCEPTED if self.pilot.body.path is None else self.told(actions[wanted[0]]())
+
+    def told(self, refused: str) -> int:
+        """What to answer; a refusal is said in words, too."""
+        if refused:
+            self.pilot.say(refused)
+        return TEMPORARILY_REJECTED if refused else ACCEPTED
+
+    def advance(self, seconds: float, now: float) -> None:
+        """Time goes by for the vehicle [s], and what there is to say is said."""
+        self.flying_time += seconds
+        while self.flying_time >= TICK:
+            self.flying_time -= TICK
+            self.pilot.tick()
+            self.say_all()
+            self.ticks += 1
+        upload = self.upload
+        if upload is not None and now - upload.asked > ASK_AGAIN:
+            upload.tries += 1
+            if upload.tries > GIVE_UP:
+                self.upload = None
+                ack = messages().MAVLink_mission_ack_message(*upload.sender, CANCELLED, upload.kind)
+                self.answer(ack, upload.peer)
+            else:
+                self.ask(now)
+
+    def say_all(self) -> None:
+        """Position ten times a second, state once, and what happened."""
+        reached, pilot = messages().MAVLink_mission_item_reached_message, self.pilot
+        said = [self.position(), *(reached(self.numbered(number)) for number in pilot.reached), *self.spoken()]
+        pilot.reached.clear()
+        if self.told_item != pilot.current:
+            said.append(self.current_item())
+        if self.ticks % 10 == 0:
+            said += self.state()
+        for message in said:
+            self.answer(message, None)
+
+    def state(self) -> list[Any]:
+        """What it says once a second."""
+        pilot, words = self.pilot, messages()
+        base = 1 | (128 if pilot.armed else 0) | 8  # its own modes; armed; guided
+        if self.autopilot == ARDUPILOT:
+            mode = ARDUPILOT_MODES.get(pilot.mode, 5)
+        else:
+            mode = 4 << 16 | PX4_SUBMODES.get(pilot.mode, 3) << 24
+        status = 6 if pilot.mode == CRASHED else 4 if pilot.armed else 3
+        landed = 1 if pilot.body.path is None else 2
+        uav = pilot.body.uav
+        left = -1 if not np.isfinite(uav.battery) else max(round(100 * (1 - pilot.body.where.used / uav.battery)), 0)
+        sensors = 32  # GPS
+        return [
+            words.MAVLink_heartbeat_message(2, self.autopilot, base, mode, status, 3),
+            words.MAVLink_sys_status_message(sensors, sensors, sensors, 0, 65535, -1, left, 0, 0, 0, 0, 0, 0),
+            self.current_item(),
+            words.MAVLink_extended_sys_state_message(0, landed),
+            words.MAVLink_fence_status_message(int(pilot.breached), 0, 3 if pilot.breached else 0, 0),
+            words.MAVLink_gps_raw_int_message(
+                round(1e6 * pilot.body.where.time), 3, *self.degrees(pilot.body.state.seen_position),
+                65535, 65535, 65535, 65535, 12,
+            ),
+        ]  # fmt: skip
+
+    def current_item(self) -> Any:
+        self.told_item = self.pilot.current
+        return messages().MAVLink_mission_current_message(self.numbered(self.told_item), len(self.plans[MISSION]))
+
+    def numbered(self, number: int) -> int:
+        """An item's number as the ground station counts them."""
+        return number + int(self.autopilot == ARDUPILOT)
+
+    def spoken(self) -> list[Any]:
+        """What the pilot said, cut to what fits."""
+        said = [messages().MAVLink_statustext_message(4, words.encode()[:50]) for words in self.pilot.words]
+        self.pilot.words.clear()
+        return said
+
+    def geographic(self, point: np.ndarray) -> tuple[float, float, float]:
+        longitude, latitude, height = self.pilot.city.to_geographic(point).tolist()
+        return longitude, latitude, height
+
+    def degrees(self, point: np.ndarray) -> tuple[int, int, int]:
+        """Latitude, longitude, and height in millimetres, as they travel."""
+        longitude, latitude, height = self.geographic(point)
+        return round(latitude * 1e7), round(longitude * 1e7), round(1000 * height)
+
+    def position(self) -> Any:
+        where, home = self.pilot.body.where, self.pilot.home
+        east, north, up = (round(100 * float(value)) for value in where.velocity)
+        above = round(1000 * float(where.seen[2] - home[2]))
+        return messages().MAVLink_global_position_int_message(
+            round(1000 * where.time), *self.degrees(where.seen), above, north, east, -up, 65535
+        )
+
+    def version(self) -> Any:
+        return messages().MAVLink_autopilot_version_message(CAN, 0, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, 0)
+
+    def home_position(self) -> Any:
+        place = self.degrees(self.pilot.home)
+        return messages().MAVLink_home_position_message(*place, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
