@@ -40,10 +40,10 @@ def constant_speed(route: Route, speed: float) -> Path:
 
 
 def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float | np.ndarray) -> Path:
-    """As fast as asked, everywhere or on each leg, but for turns, head winds, drag that the thrust holds, climb, descent and what it can brake.
+    """As fast as asked, but for turns, head winds, drag that the thrust holds, climb, descent and what it can brake.
 
-    Half of what the rotors have left beside weight, rain and mean wind is for turns, half for gusts; it may bank by
-    30° at most.
+    Asked is one speed, or one for each leg. Half of what the rotors have left beside weight, rain and mean wind is for
+    turns, half for gusts; it may bank by 30° at most.
     """
     points, distance, direction = geometry(route)
     mass = uav.weight / GRAVITY

@@ -19,8 +19,8 @@ from uavlab.mavlink.dialect import (
 from uavlab.mavlink.link import Link
 from uavlab.mavlink.transfer import lost, target_of
 
-AGAIN, TRIES = 1.0, 6
-"""A command that isn't answered is sent again after so many seconds, so many times in all."""
+TIMEOUT = 6.0
+"""So long a command is sent again and again until it is answered [s]."""
 
 CUSTOM = 1
 """That a mode is the autopilot's own (MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)."""
@@ -83,7 +83,11 @@ def start(link: Link) -> None:
     ValueError: link must be one on which a vehicle was heard: connect without wait=False
     """
     command(link, ARM, 1.0)
-    command(link, START_MISSION)
+    try:
+        command(link, START_MISSION)
+    except CommandDeniedError:
+        command(link, ARM, 0.0)
+        raise
 
 
 def hold(link: Link) -> None:
@@ -180,23 +184,24 @@ def command(link: Link, number: int, *parameters: float) -> None:
     checks.instance("link", link, Link)
     if link.closed or link.vehicle is None:
         raise ValueError("link must be one on which a vehicle was heard: connect without wait=False")
-    said = []
+    said, patience, attempt = [], link.patience, 0
     values = [*parameters, *[0.0] * (7 - len(parameters))]
-    for attempt in range(TRIES):
+    end, patience.times = time.monotonic() + TIMEOUT, 0
+    while time.monotonic() < end:
         link.send(messages().MAVLink_command_long_message(*target_of(link), number, attempt, *values))
-        again = time.monotonic() + AGAIN
-        while (rest := again - time.monotonic()) > 0:
+        patience.asked(time.monotonic())
+        attempt = min(attempt + 1, 255)
+        while (rest := patience.asked_at + patience.seconds - time.monotonic()) > 0:
             answer = link.receive("COMMAND_ACK", "STATUSTEXT", timeout=rest)
-            if answer is None:
-                continue
-            if answer.get_type() == "STATUSTEXT":
+            if answer is not None and answer.get_type() == "STATUSTEXT":
                 said.append(answer.text)
-            elif answer.command == number:
+            elif answer is not None and answer.command == number:
+                patience.answered(time.monotonic())
                 if answer.result == ACCEPTED:
                     return
                 why = said[-1] if said else name_of("MAV_RESULT", answer.result)
                 raise CommandDeniedError(f"the vehicle doesn't {WORDS.get(number, f'do command {number}')}: {why}")
-    raise lost(link, f"was told to {WORDS.get(number, f'do command {number}')}", AGAIN * TRIES)
+    raise lost(link, f"was told to {WORDS.get(number, f'do command {number}')}", TIMEOUT)
 
 
 WORDS = {

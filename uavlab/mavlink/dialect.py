@@ -15,6 +15,9 @@ PLANS = {MISSION: "mission", FENCE: "fence", RALLY_POINTS: "rally points"}
 ACCEPTED = 0
 """MAV_MISSION_RESULT and MAV_RESULT alike."""
 
+CANCELLED = 15
+"""MAV_MISSION_OPERATION_CANCELLED: who waited for items gave up."""
+
 ARDUPILOT, PX4 = 3, 12
 """MAV_AUTOPILOT."""
 

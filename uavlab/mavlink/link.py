@@ -17,6 +17,7 @@ from typing import Any, NamedTuple, Self
 
 from uavlab import checks
 from uavlab.mavlink.dialect import codec, messages, packed
+from uavlab.mavlink.patience import Patience
 
 STATION_SYSTEM, STATION_COMPONENT = 255, 190
 """What ground stations call themselves."""
@@ -77,6 +78,7 @@ class Link:
         """Packets that were no message."""
         self.heard = -float("inf")
         """When the vehicle was heard last, by `time.monotonic`."""
+        self.patience = Patience()
         self.waiting: deque[Any] = deque()
         self.beaten = -float("inf")
         self.closed = False

@@ -29,8 +29,8 @@ SILENCE = 5.0
 ARMED = 128
 """Bit of a mode (MAV_MODE_FLAG_SAFETY_ARMED)."""
 
-CRASHES = ("crashed", "blown away", "the battery is empty")
-"""How what the simulated vehicle says of its end in the air begins."""
+EMERGENCY = 6
+"""Of a heartbeat (MAV_STATE): with motors that stand, a crash."""
 
 ON_GROUND = 1
 """MAV_LANDED_STATE."""
@@ -56,13 +56,13 @@ class Telemetry(NamedTuple):
     battery : float
         What is left [%]; NaN where it doesn't know.
     mode : str
-        "ready", "take off", "mission", "hold", "return", "land", or the autopilot's number.
+        "ready", "take off", "mission", "hold", "return", "land", "crashed", or the autopilot's number.
     armed : bool
         Whether the motors turn.
     current : int
-        Number of the item that it flies to, −1 before it says one.
+        Number of the item of the mission that it flies to, −1 before it says one.
     reached : tuple of int
-        Items reached since the last one of these.
+        Numbers of items reached since the last one of these.
     breached : bool
         Whether it is outside of its fence.
     said : tuple of str
@@ -152,7 +152,8 @@ def followed(link: Link, silence: float, until_landed: bool) -> Iterator[Telemet
     state = {"battery": np.nan, "mode": "ready", "armed": False, "current": -1, "breached": False, "flown": False}
     reached: list[int] = []
     said: list[str] = []
-    last = time.monotonic()
+    first = int(link.autopilot == ARDUPILOT)  # whose item 0 is home
+    over, last = False, time.monotonic()
     while True:
         message = link.receive(timeout=min(silence, 0.5))
         now = time.monotonic()
@@ -164,16 +165,18 @@ def followed(link: Link, silence: float, until_landed: bool) -> Iterator[Telemet
         kind = message.get_type()
         if kind == "GLOBAL_POSITION_INT":
             yield sample(message, state, tuple(reached), tuple(said))
+            if over:
+                return
             reached.clear()
             said.clear()
         elif kind == "MISSION_ITEM_REACHED":
-            reached += [message.seq] * (message.seq not in reached)
+            reached += [message.seq - first] * (message.seq - first not in reached)
         elif kind == "STATUSTEXT":
             said.append(message.text)
         elif kind == "EXTENDED_SYS_STATE":
             state["flown"] = state["flown"] or (bool(state["armed"]) and message.landed_state != ON_GROUND)
-            if until_landed and state["flown"] and message.landed_state == ON_GROUND and not state["armed"]:
-                return
+            stands = message.landed_state == ON_GROUND and not state["armed"]
+            over = until_landed and bool(state["flown"]) and stands  # after one more sample
         else:
             note(message, state, link.autopilot)
 
@@ -187,9 +190,10 @@ def note(message: Any, state: dict[str, Any], autopilot: int) -> None:
             state["mode"] = ARDUPILOT_MODES.get(message.custom_mode, f"mode {message.custom_mode}")
         else:
             state["mode"] = PX4_MODES.get(message.custom_mode >> 24, f"mode {message.custom_mode >> 16 & 255}")
-        state["mode"] = state["mode"] if state["armed"] else "ready"
+        if not state["armed"]:
+            state["mode"] = "crashed" if message.system_status == EMERGENCY else "ready"
     elif kind == "MISSION_CURRENT":
-        state["current"] = message.seq
+        state["current"] = message.seq - int(autopilot == ARDUPILOT)
     elif kind == "SYS_STATUS":
         state["battery"] = float(message.battery_remaining) if message.battery_remaining >= 0 else np.nan
     elif kind == "FENCE_STATUS":
@@ -292,15 +296,13 @@ class FlightLog:
 
     @property
     def outcome(self) -> str:
-        """ "crashed", "arrived" where the last item was reached, or "landed" elsewhere; "gave up" if it wasn't heard so
-        long."""
-        said = [words for one in self.samples for words in one.said]
-        if any(words.startswith(CRASHES) for words in said):
-            return "crashed"
-        if "landed" not in said:
+        """ "arrived" at the end of the mission, "landed" elsewhere, "crashed", or "gave up" if that wasn't heard."""
+        if not len(self.samples) or self.samples[-1].armed:
             return "gave up"
-        last = max((number for one in self.samples for number in one.reached), default=-1)
-        return "arrived" if last >= len(self.mission.items) - 1 else "landed"
+        last = self.samples[-1]
+        if last.mode == "crashed":
+            return "crashed"
+        return "arrived" if last.current >= len(self.mission.items) - 1 else "landed"
 
     def flight(self) -> Flight:
         """The track as a flight, for figures and scenes.
@@ -330,8 +332,8 @@ class FlightLog:
         >>> from uavlab.vehicle import LIGHT_QUADROTOR
         >>> city, route = table1_city(), Route([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
         >>> mission = Mission.from_route(route, city, LIGHT_QUADROTOR, home=(4.36, 52.01))
-        >>> heard = [Telemetry(t, 4.36, 52.01, 31.0, 31.0, (5.0, 0.0, 0.0), 97.0, "mission", True, 2) for t in (9.0, 9.1)]
-        >>> FlightLog(mission, city, heard).flight().duration
+        >>> heard = Telemetry(9.0, 4.36, 52.01, 31.0, 31.0, (5.0, 0.0, 0.0), 97.0, "mission", True, 2)
+        >>> FlightLog(mission, city, [heard, heard._replace(time=9.1)]).flight().duration
         9.1
         """
         if len(self.samples) < 2:

@@ -21,6 +21,7 @@ from uavlab.mavlink.coding import item_of, items_of, message_of, polygons_of, ra
 from uavlab.mavlink.dialect import (
     ACCEPTED,
     ARDUPILOT,
+    CANCELLED,
     EVERYTHING,
     FENCE,
     HOME_POSITION,
@@ -266,6 +267,8 @@ def give(link: Link, kind: int, items: list[Item], timeout: float, bar: Any) -> 
                 link.send(message_of(items[asked], asked, kind, target))  # the last word may have been lost
             continue
         if message.get_type() == "MISSION_ACK":
+            if message.type == CANCELLED:
+                raise lost(link, f"asked in vain for item {asked + 1} of {len(items)} of the {PLANS[kind]}", timeout)
             if message.type != ACCEPTED:
                 raise rejected(kind, items, asked, message.type)
             if asked == len(items) - 1:
@@ -307,13 +310,15 @@ def fetch(link: Link, kind: int, timeout: float) -> list[Item]:
 
 def asked_for(link: Link, request: Any, kind: str, fits: Any, timeout: float) -> Any:
     """The answer to a request, which is sent again and again."""
-    end = time.monotonic() + timeout
+    end, patience = time.monotonic() + timeout, link.patience
+    patience.times = 0
     while time.monotonic() < end:
         link.send(request)
-        again = time.monotonic() + AGAIN
-        while (rest := again - time.monotonic()) > 0:
+        patience.asked(time.monotonic())
+        while (rest := patience.asked_at + patience.seconds - time.monotonic()) > 0:
             answer = link.receive(kind, timeout=rest)
             if answer is not None and fits(answer):
+                patience.answered(time.monotonic())
                 return answer
     raise lost(link, f"was asked for a {kind}", timeout)
 

@@ -6,12 +6,16 @@ that stay clear, and a fence around them. Ground stations read its files, `uavla
 
 from uavlab.mission.items import FencePolygon, Item
 from uavlab.mission.model import Mission
+from uavlab.mission.preflight import Check, Preflight, preflight
 from uavlab.mission.readers import read_plan, read_wpl
 
 __all__ = [
+    "Check",
     "FencePolygon",
     "Item",
     "Mission",
+    "Preflight",
+    "preflight",
     "read_plan",
     "read_wpl",
 ]

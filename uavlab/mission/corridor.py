@@ -14,14 +14,13 @@ import numpy as np
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.bounds import Bounds, keeps
-from uavlab.city.rasterise import bilinear
 from uavlab.spline.curve import CONTACT
 
 STOP = 1.0
 """How long it stops where it can't round the corner [s]."""
 
-ALONG = 0.5
-"""The ground below a leg is looked at as often as this [cells]."""
+LEAST_RADIUS = 0.01
+"""Of acceptance [m]; 0 would be the autopilot's own."""
 
 
 @dataclass(frozen=True)
@@ -35,22 +34,28 @@ class Corridor:
     """How far from the route [m]."""
     follows: bool
     """Whether they follow the ground, or are straight."""
+    ceiling: float = np.inf
+    """Greatest height above ground [m]."""
 
     def clear(self, start: np.ndarray, end: np.ndarray, aside: float = 0.0) -> bool:
         """Whether a leg keeps the bounds, with so much room around it [m]."""
         origin, cell = self.city.origin, self.city.cell
         room = (aside + self.rise(start, end)) / cell
-        return bool(keeps(self.bounds, (start - origin) / cell, (end - origin) / cell, room, 0.0)[0])
+        kept = keeps(self.bounds, (start - origin) / cell, (end - origin) / cell, room, 0.0)[0]
+        return bool(kept) and self.highest(start, end) <= self.ceiling + 1e-6
+
+    def highest(self, start: np.ndarray, end: np.ndarray) -> float:
+        """Greatest height of a leg above the ground [m]; of one that follows it that is at an end."""
+        _, above = above_ground(self.city, start, end)
+        return float((above if self.follows else extremes(above)).max())
 
     def rise(self, start: np.ndarray, end: np.ndarray) -> float:
         """How far a leg that follows the ground leaves the straight line, up or down [m]."""
         if not self.follows or self.city.ground is None:
             return 0.0
-        count = max(int(np.ceil(np.linalg.norm(end - start) / (ALONG * self.city.cell))), 1)
-        share = np.linspace(0.0, 1.0, count + 1)
-        plan = start[:2] + share[:, None] * (end - start)[:2]
-        ground = bilinear(self.city.ground, (plan - self.city.origin[:2]) / self.city.cell)
-        return float(np.abs(ground - (ground[0] + share * (ground[-1] - ground[0]))).max())
+        share, above = above_ground(self.city, start, end)
+        evenly = above[0, 0] + share * (above[2, -1] - above[0, 0])
+        return float(np.abs(extremes(above - evenly)).max())
 
     def thinned(self, points: np.ndarray) -> np.ndarray:
         """Which of the points (N, 3) are waypoints: all others are within the corridor's width of clear legs.
@@ -69,8 +74,8 @@ class Corridor:
             start, end = points[first], points[last]
             inner = points[first + 1 : last]
             apart = distance_to_leg(inner, start, end)
-            near = len(inner) == 0 or apart.max() <= self.width
-            if near and self.rise(start, end) <= self.width and self.clear(start, end):
+            farthest = self.rise(start, end) + apart.max(initial=0.0)
+            if farthest <= self.width and self.clear(start, end):
                 continue
             if len(inner) == 0:
                 self.refuse(first, start, end)
@@ -106,6 +111,16 @@ class Corridor:
         return stops
 
 
+def reaches(points: np.ndarray, radius: float) -> np.ndarray:
+    """From how near of each waypoint (N, 3) on an autopilot may turn to the next, (N,) [m]: half the legs, where short.
+
+    Else it would be at the next waypoint before it came to this one, and cut more than one corner.
+    """
+    half = np.linalg.norm(np.diff(points, axis=0), axis=1) / 2
+    inner = np.minimum(half[:-1], half[1:])
+    return np.clip(np.concatenate([[radius], inner, [radius]]), LEAST_RADIUS, radius)
+
+
 def corner(
     before: np.ndarray, here: np.ndarray, after: np.ndarray, radius: float
 ) -> tuple[np.ndarray, np.ndarray, float]:
@@ -134,6 +149,44 @@ def distance_to_leg(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> n
     return np.linalg.norm(points - start - share[:, None] * leg, axis=1)
 
 
+def above_ground(city: City, start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Height of a straight leg above the ground, in pieces in which the ground is a parabola.
+
+    Returns
+    -------
+    share : (3, P) array
+        Of the leg, at the beginning, in the middle and at the end of each piece. Where it crosses a line between the
+        centres of columns the ground bends.
+    above : (3, P) array
+        [m]
+    """
+    (x, y), (dx, dy) = ((start - city.origin) / city.cell - 0.5)[:2], ((end - start) / city.cell)[:2]
+    cuts = [np.array([0.0, 1.0])]
+    for first, extent in ((x, dx), (y, dy)):
+        lines = np.arange(np.ceil(min(first, first + extent)), np.floor(max(first, first + extent)) + 1)
+        cuts += [np.clip((lines - first) / extent, 0.0, 1.0)] if extent else []
+    cut = np.unique(np.concatenate(cuts)) if city.ground is not None else cuts[0]
+    share = np.stack([cut[:-1], (cut[:-1] + cut[1:]) / 2, cut[1:]])
+    return share, city.height_above_ground(start + share[..., None] * (end - start))
+
+
+def extremes(values: np.ndarray) -> np.ndarray:
+    """Values of parabolas at beginning, middle and end (3, P), and where each turns or is next to it, (4, P)."""
+    first, middle, last = values
+    bend, slope = 2 * (first - 2 * middle + last), 4 * middle - 3 * first - last
+    at = np.clip(-slope / np.where(bend == 0, np.inf, 2 * bend), 0.0, 1.0)
+    return np.vstack([values, first + at * (slope + at * bend)])
+
+
+def zone_on_way(city: City, points: np.ndarray) -> str:
+    """Name of a no-fly zone that a way through points (N, 3) [m] enters, empty if none; above the map as at its top."""
+    highest = city.bounds[1, 2] - city.cell / 2
+    index, _ = city.voxels_along(np.column_stack([points[:, :2], np.minimum(points[:, 2], highest)]))
+    index = index[((index >= 0) & (index < city.shape)).all(axis=1)]
+    closed = index[city.in_no_fly[tuple(index.T)]]
+    return city.zone_at(city.center_of(closed[0])) if len(closed) else ""
+
+
 def floor_below(city: City, point: np.ndarray) -> tuple[float, float]:
     """What a UAV above it would land on [m]: the roof or the ground itself, and the top of the voxels that hold it."""
     i, j, k = np.clip(city.cell_of(point), 0, np.array(city.shape) - 1)
@@ -157,4 +210,10 @@ def check_column(city: City, name: str, point: np.ndarray, diameter: float) -> f
                 f"wall is {apart:.2f} m away, and a UAV of {diameter:g} m needs {diameter / 2:g} m: begin and end a "
                 "route where it can rise and land"
             )
+    zone = zone_on_way(city, np.array([(*point[:2], surface), point]))
+    if zone:
+        raise ValueError(
+            f"{name} at {checks.show(point)}: between it and what lies below is no-fly zone {zone!r}: begin and end a "
+            "route where it can rise and land"
+        )
     return surface

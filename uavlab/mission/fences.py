@@ -12,13 +12,14 @@ from uavlab.city.buildings import convex_parts
 from uavlab.city.place import Place
 from uavlab.mission.items import FencePolygon, on_wire
 
-ROUNDNESS = 2
-"""Corners of the fence for a quarter of a circle."""
+SHARPNESS = 1.1
+"""How far the fence may be from a corner of the hull [margins]; where it would be farther, that is cut off."""
 
 
 def inclusion(place: Place, points: np.ndarray, margin: float) -> FencePolygon:
     """The convex hull of points (N, 2) [m], wider by a margin: with it the straight way home is inside, too."""
-    hull = shapely.MultiPoint(points).convex_hull.buffer(margin, quad_segs=ROUNDNESS)
+    hull = shapely.MultiPoint(points).convex_hull
+    hull = hull.buffer(margin, cap_style="square", join_style="mitre", mitre_limit=SHARPNESS)
     return polygon_at(place, hull, True, "fence")
 
 

@@ -36,6 +36,9 @@ FRAMES = {"sea": SEA, "home": HOME, "terrain": TERRAIN}
 DEGREES, THOUSANDTHS = 7, 3
 """Digits that are kept."""
 
+GREATEST = 3.4e38
+"""Number that 32 bits hold."""
+
 HIGHEST = 20_000.0
 """Beyond it [m] no multirotor flies."""
 
@@ -139,7 +142,8 @@ def checked_item(name: str, item: Any) -> Item:
 def checked_parameters(name: str, item: Item) -> list[float]:
     """Four numbers; NaN is one, and says "as it is"."""
     parameters = checks.array(f"{name}.parameters", item.parameters, 4, finite=False)
-    checks.refuse(parameters, abs(parameters) != math.inf, f"{name}.parameters must not be infinite")
+    fits = ~(abs(parameters) > GREATEST)
+    checks.refuse(parameters, fits, f"{name}.parameters must not be infinite, or too large for 32 bits")
     return parameters.tolist()
 
 
@@ -160,7 +164,7 @@ def checked_corner(name: str, corner: Any) -> tuple[float, float]:
     latitude, longitude = checks.array(name, corner, 2).tolist()
     checks.within(f"{name}: latitude", latitude, -90.0, 90.0, "degrees (the order is latitude, longitude)")
     checks.within(f"{name}: longitude", longitude, -540.0, 540.0, "degrees")
-    return on_wire(latitude), on_wire((longitude + 180.0) % 360.0 - 180.0)
+    return on_wire(latitude), longitude_on_wire(longitude)
 
 
 def has_place(item: Item) -> bool:
@@ -171,6 +175,11 @@ def has_place(item: Item) -> bool:
 def on_wire(degrees: float) -> float:
     """Degrees as they travel, in whole 1e-7; no −0."""
     return round(degrees, DEGREES) + 0.0
+
+
+def longitude_on_wire(degrees: float) -> float:
+    """The same within −180 to 180, without 180 itself, which is −180."""
+    return on_wire((on_wire(degrees) + 180.0) % 360.0 - 180.0)
 
 
 def kept(value: float) -> float:

@@ -12,7 +12,15 @@ import shapely
 from uavlab import checks
 from uavlab.city import City, Place
 from uavlab.city.place import ABOVE_SEA, ELLIPSOIDAL, UNKNOWN, place_of
-from uavlab.mission.corridor import STOP, Corridor, check_column, floor_below
+from uavlab.mission.corridor import (
+    STOP,
+    Corridor,
+    above_ground,
+    check_column,
+    extremes,
+    floor_below,
+    zone_on_way,
+)
 from uavlab.mission.items import (
     CHANGE_SPEED,
     HOME,
@@ -26,6 +34,7 @@ from uavlab.mission.items import (
     Item,
 )
 from uavlab.route import Route, Way, as_route
+from uavlab.spline.curve import CONTACT
 from uavlab.vehicle import UAV
 
 FARTHEST_HOME = 1000.0
@@ -50,9 +59,14 @@ class Site(NamedTuple):
     def home(self) -> Place:
         return self.geographic(self.at)
 
+    @property
+    def plan(self) -> Place:
+        """Of x = y = 0, as the city has it: metres are those at its height, whatever home's are measured from."""
+        return self.place if self.city.reference is None else self.city.reference
+
     def geographic(self, point: np.ndarray) -> Place:
         """A point of the map on the Earth."""
-        longitude, latitude = self.place.longitude_latitude(point[:2])
+        longitude, latitude = self.plan.longitude_latitude(point[:2])
         return Place(float(longitude), float(latitude), float(point[2] + self.place.height))
 
     def item(self, command: int, frame: int, point: np.ndarray, parameters: tuple[float, float, float, float]) -> Item:
@@ -66,7 +80,9 @@ class Site(NamedTuple):
             altitude = float(self.city.height_above_ground(point))
         return Item(command, frame, parameters, there.latitude, there.longitude, altitude)
 
-    def way(self, frame: int, points: np.ndarray, speeds: np.ndarray, holds: np.ndarray, radius: float) -> list[Item]:
+    def way(
+        self, frame: int, points: np.ndarray, speeds: np.ndarray, holds: np.ndarray, radii: np.ndarray
+    ) -> list[Item]:
         """Take off to the first of the points (N, 3), and fly the others, each leg at its speed (N − 1,)."""
         items = [self.item(TAKEOFF, frame, points[0], (0.0, 0.0, 0.0, heading(points[0], points[1])))]
         asked = None
@@ -79,18 +95,17 @@ class Site(NamedTuple):
                 if number == len(points) - 1
                 else heading(*points[[number, number + 1]])
             )
-            items.append(self.item(WAYPOINT, frame, points[number], (float(holds[number]), radius, 0.0, onwards)))
+            parameters = float(holds[number]), float(radii[number]), 0.0, onwards
+            items.append(self.item(WAYPOINT, frame, points[number], parameters))
         return items
 
-    def ending(self, end: str, frame: int, goal: np.ndarray, below: float, return_height: float) -> list[Item]:
-        """What it does at the goal; to return it first rises to where the way home is clear."""
+    def ending(self, end: str, frame: int, goal: np.ndarray, below: float, climb: np.ndarray) -> list[Item]:
+        """What it does at the goal; to return it first rises to where the way home is clear, (0 or 1, 3)."""
         if end == "land":
             return [self.item(LAND, frame, np.array([*goal[:2], below]), (0.0, 0.0, 0.0, 0.0))]
         if end == "stay":
             return [self.item(LOITER, frame, goal, (0.0, 0.0, 0.0, 0.0))]
-        above = np.array([*goal[:2], max(goal[2], self.at[2] + return_height)])
-        rise = [] if above[2] == goal[2] else [self.item(WAYPOINT, frame, above, (STOP, 1.0, 0.0, 0.0))]
-        return [*rise, Item(RETURN)]
+        return [*(self.item(WAYPOINT, frame, above, (STOP, 1.0, 0.0, 0.0)) for above in climb), Item(RETURN)]
 
 
 def heading(start: np.ndarray, end: np.ndarray) -> float:
@@ -116,12 +131,13 @@ def kept_clearance(way: Route, uav: UAV, min_clearance: float | None) -> float:
 
 def check_ceiling(way: Route, city: City, ceiling: float) -> None:
     """Refuse a way that is below the ground somewhere, or too high above it."""
-    above = city.height_above_ground(way.points)
+    points = way.points if city.ground is None else way.resample(city.cell / 2).points
+    above = city.height_above_ground(points)
     if above.min() < 0:
-        lowest = checks.show(way.points[above.argmin()])
+        lowest = checks.show(points[above.argmin()])
         raise ValueError(f"route is {-above.min():.1f} m below the ground at {lowest}: plan it above")
     if above.max() > ceiling + 1e-6:
-        highest = checks.show(way.points[above.argmax()])
+        highest = checks.show(points[above.argmax()])
         raise ValueError(
             f"route is {above.max():.1f} m above the ground at {highest}, and the ceiling is {ceiling:g} m: plan it "
             f"with max_height={ceiling:g}, or ask for another ceiling, if it is lawful there"
@@ -139,7 +155,7 @@ def located(
         )
     known = UNKNOWN if city.source is None else city.source.heights
     below = np.array([*start[:2], floor_below(city, start)[0]])
-    site = Site(city, city.checked_reference(), below, known) if home is None else given_site(city, home, below, known)
+    site = Site(city, city.checked_reference(), below, known) if home is None else given_site(city, home, start, known)
     if altitudes == "sea" and site.heights != ABOVE_SEA:
         kind = {ELLIPSOIDAL: "ellipsoidal, up to 100 m off the sea", UNKNOWN: "of an unknown system"}[site.heights]
         raise ValueError(
@@ -150,38 +166,39 @@ def located(
     return site, ["the height of home above the sea isn't known"] * unknown
 
 
-def given_site(city: City, home: Place | Sequence[float], below: np.ndarray, known: str) -> Site:
-    """Home where the caller says it is."""
+def given_site(city: City, home: Place | Sequence[float], start: np.ndarray, known: str) -> Site:
+    """Home where the caller says it is, on what lies there below the height of the start."""
     given = place_of("home", home)
     with_height = isinstance(home, Place) or len(home) == 3
     heights = ABOVE_SEA if with_height else known
     if city.reference is None:
+        below = np.array([*start[:2], floor_below(city, start)[0]])
         height = given.height - below[2] if with_height else 0.0
-        return Site(city, place_of_origin(given, below[:2])._replace(height=height), below, heights)
+        return Site(city, place_of_origin(given._replace(height=height), below[:2]), below, heights)
     at = city.reference.east_north((given.longitude, given.latitude))
-    apart = float(np.hypot(*(at - below[:2])))
+    apart = float(np.hypot(*(at - start[:2])))
     if apart > FARTHEST_HOME:
         raise ValueError(
             f"home is {apart / 1000:.3g} km from the start of the route, at most {FARTHEST_HOME / 1000:g} km make "
             "sense: the order is (longitude, latitude[, height above sea])"
         )
-    if not city.inside((*at, below[2])):
+    if not city.inside((*at, start[2])):
         raise ValueError(
             f"home lies outside of the map, at ({at[0]:.1f}, {at[1]:.1f}) m, where nothing is known of obstacles: read "
             "the city with a larger margin, or take off on the map"
         )
-    at = np.array([*at, floor_below(city, np.array([*at, city.bounds[1, 2] - city.cell / 2]))[0]])
+    at = np.array([*at, floor_below(city, np.array([*at, start[2]]))[0]])
     place = city.reference
     return Site(city, place._replace(height=given.height - at[2]) if with_height else place, at, heights)
 
 
 def place_of_origin(where: Place, xy: np.ndarray) -> Place:
-    """The place of x = y = 0 of a map on which a place has the coordinates (2,) [m]."""
-    origin = Place(where.longitude, where.latitude)
+    """The place of x = y = 0 of a map, as high, on which a place has the coordinates (2,) [m]."""
+    origin = where
     for _ in range(6):  # the axes turn a little when their origin moves
         off = xy - origin.east_north((where.longitude, where.latitude))
         longitude, latitude = origin.longitude_latitude(-off)
-        origin = Place(float(longitude), float(latitude))
+        origin = Place(float(longitude), float(latitude), where.height)
     return origin
 
 
@@ -234,6 +251,37 @@ def height_to_return(site: Site, points: np.ndarray, keep: float) -> float:
     return float(max(top, points[:, 2].max()) - site.at[2])
 
 
+def climb_to_return(site: Site, goal: np.ndarray, return_height: float) -> np.ndarray:
+    """Where it rises to above the goal, (1, 3) [m]; (0, 3) where it is high enough."""
+    top = site.at[2] + return_height
+    return np.array([[*goal[:2], top]]) if top > goal[2] else np.empty((0, 3))
+
+
+def check_return(legs: Corridor, site: Site, points: np.ndarray, return_height: float, uav: UAV) -> None:
+    """Refuse to fly home from the last of the points (N, 3) where that is closed, too high, or something hangs over."""
+    city, goal, start = site.city, points[-1], points[0]
+    top = max(goal[2], site.at[2] + return_height)
+    way = np.array([goal, [*goal[:2], top], [*start[:2], top], start])
+    cure = "end='land' or 'stay'"
+    body = (1 - CONTACT) * uav.diameter / 2
+    for where, high, keep in ((goal, way[1], legs.bounds.keep * city.cell), (start, way[2], body)):
+        apart = float(city.segment_distance(where, high))
+        if apart < keep:
+            raise ValueError(
+                f"end='return' needs a clear way up to {top - where[2]:.1f} m above {checks.show(where)}, from where "
+                f"the straight way home is clear, and an obstacle is {apart:.2f} m from it: use {cure}"
+            )
+    above = extremes(above_ground(city, way[1], way[2])[1]).max()
+    if above > legs.ceiling + 1e-6:
+        raise ValueError(
+            f"end='return' climbs to {above:.1f} m above the ground, over all that stands between the way and home, "
+            f"and the ceiling is {legs.ceiling:g} m: use {cure}, or ask for another ceiling, if it is lawful there"
+        )
+    zone = zone_on_way(city, way)
+    if zone:
+        raise ValueError(f"end='return' flies straight home through no-fly zone {zone!r}: use {cure}")
+
+
 def rally_point(site: Site, name: str, point: npt.ArrayLike) -> tuple[np.ndarray, Place]:
     """A point to land at in trouble, on the map and on the Earth, its height above home."""
     where = checks.array(name, point, 3)
@@ -241,5 +289,8 @@ def rally_point(site: Site, name: str, point: npt.ArrayLike) -> tuple[np.ndarray
         raise ValueError(
             f"{name} {checks.show(where)} lies in {site.city.building_at(where)}, or off the map: choose another"
         )
+    if site.city.zone_at(where):
+        zone = site.city.zone_at(where)
+        raise ValueError(f"{name} {checks.show(where)} lies in no-fly zone {zone!r}: choose another")
     there = site.geographic(where)
     return where, there._replace(height=float(where[2] - site.at[2]))

@@ -14,7 +14,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.place import ABOVE_SEA
 from uavlab.files import written_whole
-from uavlab.mission.items import COMMANDS, FRAMES, Item, has_place, on_wire
+from uavlab.mission.items import COMMANDS, FRAMES, Item, has_place, longitude_on_wire, on_wire
 
 if TYPE_CHECKING:
     from uavlab.mission.model import Mission
@@ -66,7 +66,7 @@ def write_gpx(mission: Mission, path: str | Path, city: City) -> None:
     route = ElementTree.SubElement(gpx, "rte")
     text(route, "name", mission.name)
     for number, (east, north, height) in enumerate(way.tolist()):
-        point = ElementTree.SubElement(route, "rtept", lat=f"{north:.7f}", lon=f"{east:.7f}")
+        point = ElementTree.SubElement(route, "rtept", lat=f"{north:.7f}", lon=f"{longitude_on_wire(east):.7f}")
         if mission.heights == ABOVE_SEA:
             text(point, "ele", f"{height:.3f}")
         text(point, "name", str(number) if number else "home")
@@ -105,13 +105,14 @@ def feature(kind: str, where: Any, **named: Any) -> dict[str, Any]:
 def closed(corners: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
     """A ring whose last corner is its first, counterclockwise as seen from above, as maps want it."""
     ring = list(corners)
-    turned = sum(a[1] * b[0] - b[1] * a[0] for a, b in zip(ring, [*ring[1:], ring[0]], strict=True))
+    east = [(longitude - ring[0][1] + 180.0) % 360.0 for _, longitude in ring]  # 180° may lie between
+    turned = sum(east[n - 1] * ring[n][0] - east[n] * ring[n - 1][0] for n in range(len(ring)))
     ring = ring if turned > 0 else ring[::-1]
     return [*ring, ring[0]]
 
 
 def coordinates(east: float, north: float, height: float | None = None) -> str:
-    return f"{east:.7f},{north:.7f}" + ("" if height is None else f",{height:.3f}")
+    return f"{longitude_on_wire(east):.7f},{north:.7f}" + ("" if height is None else f",{height:.3f}")
 
 
 def placemark(document: ElementTree.Element, name: str, color: str) -> ElementTree.Element:
@@ -133,7 +134,12 @@ def text(parent: ElementTree.Element, tag: str, words: str) -> None:
 def written(root: ElementTree.Element, path: Path) -> None:
     """Write an XML document; what XML can't hold of a name is left out."""
     for element in root.iter():
-        element.text = "".join(c for c in element.text or "" if c >= " " or c in "\t\n") or None
+        element.text = "".join(filter(is_character, element.text or "")) or None
     ElementTree.indent(root)
     with written_whole(path) as part:
         ElementTree.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
+
+
+def is_character(one: str) -> bool:
+    """Whether XML 1.0 has it."""
+    return one in "\t\n" or " " <= one <= "\ud7ff" or "\ue000" <= one <= "\ufffd" or one > "\uffff"

@@ -19,10 +19,11 @@ from uavlab.city import City, Place
 from uavlab.city.bounds import bounds_of
 from uavlab.city.place import ABOVE_SEA, ELLIPSOIDAL, UNKNOWN, place_of
 from uavlab.mission import maps, plan_file, waypoint_file
-from uavlab.mission.corridor import STOP, Corridor, floor_below
+from uavlab.mission.corridor import STOP, Corridor, floor_below, reaches
 from uavlab.mission.fences import exclusions, inclusion
 from uavlab.mission.items import (
     FRAMES,
+    HIGHEST,
     HOME,
     LAND,
     SEA,
@@ -34,11 +35,14 @@ from uavlab.mission.items import (
     checked_item,
     checked_polygon,
     kept,
+    longitude_on_wire,
     on_wire,
 )
 from uavlab.mission.making import (
     check_ceiling,
+    check_return,
     checked_way,
+    climb_to_return,
     from_home,
     ground_at_ends,
     height_to_return,
@@ -269,44 +273,50 @@ class Mission:
         hold = checks.not_negative_number("hold", hold)
         radius = checks.positive_number("corner_radius", corner_radius)
         margin = checks.positive_number("fence_margin", fence_margin)
-        check_ceiling(way, city, checks.positive_number("ceiling", ceiling))
+        ceiling = checks.positive_number("ceiling", ceiling)
+        check_ceiling(way, city, ceiling)
         keep = kept_clearance(way, uav, min_clearance)
         bounds = bounds_of(city, **promises_of(way, min_clearance=keep))
-        legs = Corridor(city, bounds, checks.positive_number("corridor", corridor), frame == TERRAIN)
+        legs = Corridor(city, bounds, checks.positive_number("corridor", corridor), frame == TERRAIN, ceiling)
         points, speeds = waypoints(legs, way, uav, speed)
         site, notes = located(city, home, points[0], altitudes)
         points, speeds = from_home(legs, site, points, speeds)
         below = ground_at_ends(city, uav, points, end)
-        stops = legs.stops(points, radius)
+        return_height, climb = height_to_return(site, points, keep), np.empty((0, 3))
+        if end == "return":
+            check_return(legs, site, points, return_height, uav)
+            climb = climb_to_return(site, points[-1], return_height)
+        flown = np.vstack([points, climb])
+        stops = legs.stops(flown, radius)[: len(points)]
         holds = np.where(stops, STOP, 0.0)
-        holds[-1] = hold
-        return_height = height_to_return(site, points, keep)
-        items = site.way(frame, points, speeds, holds, radius) + site.ending(
-            end, frame, points[-1], below, return_height
+        holds[-1] = max(holds[-1], hold)
+        items = site.way(frame, points, speeds, holds, reaches(flown, radius)) + site.ending(
+            end, frame, points[-1], below, climb
         )
         rallied = [
             rally_point(site, f"rally[{n}]", point) for n, point in enumerate(checks.listed("rally", rally, "points"))
         ]
         around = np.vstack([site.at, points, *[point for point, _ in rallied]])[:, :2]
-        closed, crossed = exclusions(city, site.place, points)
+        back = [site.at] * (end == "return")
+        closed, crossed = exclusions(city, site.plan, np.vstack([points, *back]))
         notes += [f"the fence leaves out {name}: the way crosses it in plan" for name in crossed]
         notes += [f"it stops at {stops.sum()} corners that it can't round"] * bool(stops.any())
         return cls(
-            tuple(items), site.home, (inclusion(site.place, around, margin), *closed),
+            tuple(items), site.home, (inclusion(site.plan, around, margin), *closed),
             tuple(where for _, where in rallied), float(speeds.max()), radius, site.heights, site.place, return_height,
             city.name, tuple(notes),
         )  # fmt: skip
 
     def place_on(self, city: City) -> Place:
-        """Where on Earth x = y = z = 0 of the map is, with heights as those of home."""
-        return city.checked_reference() if self.place is None else self.place
+        """Where on Earth x = y = 0 of the map is, by the city, or by the mission where it doesn't know."""
+        return self.place if city.reference is None and self.place is not None else city.checked_reference()
 
     def home_on(self, city: City) -> np.ndarray:
-        """Home on the map, (3,) [m]; where the mission doesn't say how high, on what lies there."""
+        """Home on the map, (3,) [m]; on what lies there, but on the map that the mission was made on."""
         place = self.place_on(city)
         east, north = place.east_north((self.home.longitude, self.home.latitude))
-        if self.place is not None:
-            return np.array([east, north, self.home.height - place.height])
+        if self.place is not None and self.place[:2] == place[:2]:
+            return np.array([east, north, self.home.height - self.place.height])
         return np.array([east, north, floor_below(city, np.array([east, north, city.bounds[1, 2]]))[0]])
 
     def path(self, city: City) -> Route:
@@ -570,5 +580,5 @@ class Mission:
 def on_wire_place(name: str, value: Any) -> Place:
     """A place with its numbers as they travel."""
     place = place_of(name, value)
-    longitude = (place.longitude + 180.0) % 360.0 - 180.0
-    return Place(on_wire(longitude), on_wire(place.latitude), kept(place.height))
+    checks.within(f"{name}: height", place.height, -HIGHEST, HIGHEST, "m")
+    return Place(longitude_on_wire(place.longitude), on_wire(place.latitude), kept(place.height))

@@ -14,13 +14,13 @@ from uavlab import checks
 from uavlab.city.documents import read_json
 from uavlab.city.place import Place
 from uavlab.files import written_whole
-from uavlab.mission.items import HOME, SEA, TERRAIN, FencePolygon, Item, has_place
+from uavlab.mission.items import HOME, NO_FRAME, PLACED, SEA, TERRAIN, FencePolygon, Item, has_place
 
 if TYPE_CHECKING:
     from uavlab.mission.model import Mission
 
-PX4, QUADROTOR = 12, 2
-"""MAV_AUTOPILOT and MAV_TYPE that a plan names."""
+ARDUPILOT, PX4, QUADROTOR = 3, 12, 2
+"""MAV_AUTOPILOT and MAV_TYPE that a plan names; PX4 takes no altitudes above terrain."""
 
 ALTITUDE_MODES = {HOME: 1, SEA: 2, TERRAIN: 4}
 """What QGroundControl calls the frames."""
@@ -52,7 +52,7 @@ def plan_of(mission: Mission) -> dict[str, Any]:
         "groundStation": "uavlab",
         "mission": {
             "version": MISSION_VERSION,
-            "firmwareType": PX4,
+            "firmwareType": ARDUPILOT if any(item.frame == TERRAIN for item in mission.items) else PX4,
             "vehicleType": QUADROTOR,
             "cruiseSpeed": mission.speed,
             "hoverSpeed": mission.speed,
@@ -81,14 +81,13 @@ def plan_of(mission: Mission) -> dict[str, Any]:
 def simple_item(number: int, item: Item) -> dict[str, Any]:
     """An item as the file has it; null is NaN, "leave it as it is"."""
     parameters = [None if math.isnan(value) else value for value in item.parameters]
-    place = [item.latitude, item.longitude, item.altitude] if has_place(item) else [0, 0, 0]
     simple: dict[str, Any] = {
         "type": "SimpleItem",
         "autoContinue": True,
         "command": item.command,
         "doJumpId": number,
         "frame": item.frame,
-        "params": [*parameters, *place],
+        "params": [*parameters, item.latitude, item.longitude, item.altitude],
     }
     if has_place(item):
         simple |= {
@@ -103,7 +102,9 @@ def fields_of_plan(path: Path) -> dict[str, Any]:
     """What a file says of a mission, by the names of its fields."""
     try:
         (plan, *more) = read_json(path)
-        if more or plan.get("fileType") != "Plan":
+        if more:
+            raise ValueError("it holds more than one object")
+        if plan.get("fileType") != "Plan":
             raise ValueError(f"its fileType is {plan.get('fileType')!r:.40}, not 'Plan'")
         mission, ours = part_of(plan, "mission"), part_of(plan, "uavlab", {})
         notes = list(ours.get("notes", []))
@@ -153,9 +154,13 @@ def item_of(number: int, simple: Mapping[str, Any]) -> Item:
         )
     if len(simple["params"]) != 7:
         raise ValueError(f"items[{number}] must have 7 params, got {len(simple['params'])}")
-    parameters = [math.nan if value is None else value for value in simple["params"]]
     frame = SAME_FRAMES.get(simple["frame"], simple["frame"])
-    return Item(simple["command"], frame, tuple(parameters[:4]), *parameters[4:])  # type: ignore[arg-type]
+    parameters, place = [math.nan if value is None else value for value in simple["params"][:4]], simple["params"][4:]
+    if None in place:
+        if frame != NO_FRAME or simple["command"] in PLACED:
+            raise ValueError(f"items[{number}] has no place, or no altitude")
+        place = [0.0 if value is None else value for value in place]
+    return Item(simple["command"], frame, tuple(parameters), *place)  # type: ignore[arg-type]
 
 
 def place_at(latlon: Sequence[float]) -> Place:

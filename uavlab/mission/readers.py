@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from uavlab import checks
 from uavlab.mission.model import Mission
@@ -46,7 +47,8 @@ def read_plan(path: str | Path) -> Mission:
     Traceback (most recent call last):
     FileNotFoundError: [Errno 2] No such file or directory: 'no such file.plan'
     """
-    return Mission(**fields_of_plan(checks.path("path", path)))
+    path = checks.path("path", path)
+    return mission_of(path, fields_of_plan(path))
 
 
 def read_wpl(path: str | Path) -> Mission:
@@ -84,4 +86,13 @@ def read_wpl(path: str | Path) -> Mission:
     Traceback (most recent call last):
     FileNotFoundError: [Errno 2] No such file or directory: 'no such file.waypoints'
     """
-    return Mission(**fields_of_wpl(checks.path("path", path)))
+    path = checks.path("path", path)
+    return mission_of(path, fields_of_wpl(path))
+
+
+def mission_of(path: Path, fields: dict[str, Any]) -> Mission:
+    """The mission that a file says; `ValueError` with its name where that makes no sense."""
+    try:
+        return Mission(**fields)
+    except ValueError as error:
+        raise ValueError(f"{path.name} has no mission that can be flown: {error!s:.300}") from error

@@ -40,17 +40,19 @@ def fields_of_wpl(path: Path) -> dict[str, Any]:
         first, *lines = path.read_text(encoding="utf-8-sig").splitlines()
         if first.split() != FIRST_LINE.split():
             raise ValueError(f"its first line must be {FIRST_LINE!r}, got {first!r:.40}")
-        rows = [(number, line.split()) for number, line in enumerate(lines, 2) if line.strip()]
+        rows = [(number, line.split()) for number, line in enumerate(lines, 2)]
+        rows = [(number, words) for number, words in rows if words and not words[0].startswith("#")]
         found = [item_of_row(number, count, words) for count, (number, words) in enumerate(rows)]
         if len(found) < 2:
             raise ValueError(f"it must have home and at least one item, got {len(found)} lines")
+        home, *items = found
+        place = Place(home.longitude, home.latitude, home.altitude)
     except (UnicodeDecodeError, ValueError, OverflowError) as error:
         raise ValueError(f"{path.name} is no file of waypoints (QGC WPL 110), or damaged: {error!s:.300}") from error
-    home, *items = found
     speeds = [item.parameters[1] for item in items if item.command == CHANGE_SPEED and item.parameters[1] > 0]
     return {
         "items": tuple(items),
-        "home": Place(home.longitude, home.latitude, home.altitude),
+        "home": place,
         "speed": max(speeds, default=5.0),
         "heights": "above sea",
         "name": path.stem,

@@ -9,6 +9,7 @@ from uavlab.plot.charts import bars, convergence, front, profile
 from uavlab.plot.curves import corner, curve_profile
 from uavlab.plot.flights import crash_rates, in_flight, safety_domain, tracks
 from uavlab.plot.maps import RISK_LABEL, expansions, field, ground_risk, layers, plan, risk, risk_norm, section
+from uavlab.plot.station import ground_station
 from uavlab.plot.stills import still
 from uavlab.plot.style import (
     CONVERGENCE_STYLES,
@@ -42,6 +43,7 @@ __all__ = [
     "finished",
     "front",
     "ground_risk",
+    "ground_station",
     "in_flight",
     "layers",
     "new_figure",

@@ -109,7 +109,7 @@ def simulated_vehicle(
     firmware : {"px4", "ardupilot"}
         As which it behaves: ArduPilot's missions begin with home.
     pace : float
-        Seconds of flight in one of the world, 0.1 to 100.
+        Seconds of flight, and of its radio, in one of the world, 0.1 to 100.
     port : int
         To listen on, on this machine only; 0: any that is free.
     lifetime : float

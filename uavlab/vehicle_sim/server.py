@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import select
 import socket
-import sys
 import threading
 import time
 from typing import NamedTuple
@@ -69,6 +69,8 @@ class Server:
         self.vehicle = Vehicle(pilot, autopilot, self.send)
         self.over = threading.Event()
         self.now = time.monotonic()
+        self.clock = 0.0
+        """By which the vehicle flies, and its radio sends [s]."""
 
     @property
     def port(self) -> int:
@@ -76,7 +78,7 @@ class Server:
 
     def send(self, data: bytes, peer: Peer | None) -> None:
         """A packet to one ground station, or to all that are there."""
-        self.down.put(self.now, len(data), (data, peer))
+        self.down.put(self.clock, len(data), (data, peer))
 
     def run(self) -> None:
         """Until it is told to stop, its parent is gone, or its lifetime is over."""
@@ -89,17 +91,18 @@ class Server:
                 self.now = time.monotonic()
                 if ready:
                     self.hear()
-                for data, peer in self.up.due(self.now):
+                gone, last = self.service.pace * min(self.now - last, BACKLOG), self.now
+                self.clock += gone
+                for data, peer in self.up.due(self.clock):
                     self.vehicle.receive(data, peer, self.now)
-                gone = min(self.now - last, BACKLOG)
-                last = self.now
-                self.vehicle.advance(gone * self.service.pace, self.now)
+                self.vehicle.advance(gone, self.now)
                 self.speak()
         finally:
             self.socket.close()
 
     def wait_for_parent(self) -> None:
-        sys.stdin.buffer.read()
+        while os.read(0, LARGEST):  # not by sys.stdin, whose lock would be held when Python ends
+            pass
         self.over.set()
 
     def hear(self) -> None:
@@ -110,12 +113,12 @@ class Server:
             except (BlockingIOError, ConnectionRefusedError):
                 return
             self.peers[peer] = max(self.peers.get(peer, 0.0), self.now)
-            self.up.put(self.now, len(data), (data, peer))
+            self.up.put(self.clock, len(data), (data, peer))
 
     def speak(self) -> None:
         """Send what is through the radio."""
         self.peers = {peer: heard for peer, heard in self.peers.items() if self.now - heard < FORGOTTEN}
-        for data, one in self.down.due(self.now):
+        for data, one in self.down.due(self.clock):
             for peer in list(self.peers) if one is None else [one]:
                 try:
                     self.socket.sendto(data, peer)

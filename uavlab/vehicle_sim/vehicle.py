@@ -18,6 +18,7 @@ from uavlab.mavlink.dialect import (
     ACCEPTED,
     ARDUPILOT,
     ARM,
+    CANCELLED,
     EVERYTHING,
     FENCE,
     GO_HOME,
@@ -34,6 +35,7 @@ from uavlab.mavlink.dialect import (
     messages,
     packed,
 )
+from uavlab.mavlink.patience import Patience
 from uavlab.mission.items import (
     CHANGE_SPEED,
     COMMANDS,
@@ -52,10 +54,10 @@ SYSTEM, COMPONENT = 1, 1
 MOST_ITEMS = 1000
 """That it has room for, as many autopilots."""
 
-ASK_AGAIN, GIVE_UP = 0.25, 12
-"""An item that doesn't come is asked for again after so many seconds, so many times."""
+GIVE_UP = 3.0
+"""An item that doesn't come is asked for so long [s]."""
 
-UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE, INVALID, INVALID_SEQUENCE, DENIED, CANCELLED = 2, 3, 4, 5, 13, 14, 15
+UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE, INVALID, INVALID_SEQUENCE, DENIED = 2, 3, 4, 5, 13, 14
 """Answers of the mission protocol (MAV_MISSION_RESULT)."""
 
 INVALID_PLACE, INVALID_ALTITUDE = 10, 12
@@ -90,8 +92,9 @@ class Upload:
     kind: int
     count: int
     items: list[Item] = field(default_factory=list)
-    asked: float = 0.0
-    tries: int = 0
+    since: float = 0.0
+    """When the last item came [s]."""
+    patience: Patience = field(default_factory=Patience)
 
 
 class Vehicle:
@@ -146,7 +149,7 @@ class Vehicle:
             self.take(kind, [])
             self.acknowledge(message, peer, kind, ACCEPTED)
         elif self.upload is None or (self.upload.kind, self.upload.count) != (kind, message.count):
-            self.upload = Upload(peer, sender, kind, message.count)
+            self.upload = Upload(peer, sender, kind, message.count, since=now)
             self.ask(now)
         else:
             self.ask(now)  # it didn't hear the question
@@ -169,7 +172,8 @@ class Vehicle:
             self.acknowledge(message, peer, message.mission_type, result)
             return
         upload.items.append(item)
-        upload.tries = 0
+        upload.since = now
+        upload.patience.answered(now)
         if len(upload.items) < upload.count:
             self.ask(now)
             return
@@ -216,7 +220,7 @@ class Vehicle:
         """Ask for the next item."""
         upload = self.upload
         assert upload is not None
-        upload.asked = now
+        upload.patience.asked(now)
         request = messages().MAVLink_mission_request_int_message(*upload.sender, len(upload.items), upload.kind)
         self.answer(request, upload.peer)
 
@@ -347,14 +351,12 @@ class Vehicle:
             self.say_all()
             self.ticks += 1
         upload = self.upload
-        if upload is not None and now - upload.asked > ASK_AGAIN:
-            upload.tries += 1
-            if upload.tries > GIVE_UP:
-                self.upload = None
-                ack = messages().MAVLink_mission_ack_message(*upload.sender, CANCELLED, upload.kind)
-                self.answer(ack, upload.peer)
-            else:
-                self.ask(now)
+        if upload is not None and now - upload.since > GIVE_UP:
+            self.upload = None
+            ack = messages().MAVLink_mission_ack_message(*upload.sender, CANCELLED, upload.kind)
+            self.answer(ack, upload.peer)
+        elif upload is not None and upload.patience.over(now):
+            self.ask(now)
 
     def say_all(self) -> None:
         """Position ten times a second, state once, and what happened."""
