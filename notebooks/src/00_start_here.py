@@ -242,6 +242,7 @@ except ValueError as error:
 # | [10 swarms and beetles](10_particle_swarm_and_beetles.ipynb) | And swarms? What decides, if not the algorithm? |
 # | [11 B-splines](11_bsplines_and_feasibility.ipynb) | What does a UAV fly of a list of voxels, and can it? |
 # | [12 flying in gusts](12_flying_in_gusts.ipynb) | Which planner's route survives the wind, and how sure is that? |
+# | [14 from route to autopilot](14_from_route_to_autopilot.ipynb) | How does a route get into an autopilot, and does it fly it? |
 #
 # All but this one end with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is
 # right, and if not, what to think about. The whole way as one page, for any city and weather: `python -m uavlab` in a

@@ -433,6 +433,7 @@ def changed(number, **fields):
         lambda: good(speed=4.0, hold=5.0, fence_margin=2.0),
         lambda: replace(good(), fence=(rectangle(0, 0, 150, 150), rectangle(100, 5, 140, 20, inclusion=False))),
         lambda: replace(good(), place=None),
+        lambda: by_hand((X, Y, 24.0), (24.5, 28.0, 24.0), land=(GOAL_X, GOAL_Y, 0.0)),  # level to above the goal
     ],
 )
 def test_other_missions_are_right(mission):
@@ -484,6 +485,7 @@ def crossed():
         (lambda: replace(good(), items=(good().items[0], *good().items)), "its only take-off"),
         (lambda: without(21), "the only landing"),
         (lambda: replace(good(), items=(*good().items, good().items[2])), "the only landing"),
+        (lambda: replace(good(), items=(*good().items, good().items[-1])), "the only landing"),
         (lambda: changed(0, frame=5), "has a place in frame 5"),
         (lambda: by_hand((X + 20, Y, 30), (X + 30, Y, 30)), "It takes off 20.0 m from the start; 3 m are allowed."),
         (lambda: by_hand((X, Y, 30), (GOAL_X, GOAL_Y - 10, 30)), "It lands 10.0 m from the goal; 3 m are allowed."),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
@@ -89,7 +91,7 @@ def seen_from_above(axes: Axes, log: FlightLog) -> None:
     city, mission, position = log.city, log.mission, log.position
     draw_map(axes, city, np.where(built_columns(city), 1.0, np.nan), "Greys", vmin=0.0, vmax=3.0)
     draw_planned(axes, mission.path(city))
-    parts = [
+    parts: list[tuple[str, Any, str, str]] = [
         (PLANNED, "--", "", "plan"), (FLOWN, "-", "", "track, as GPS has it"), (PLANNED, "", "o", "home"),
         (PLANNED, "", "^", "end"),
     ]  # fmt: skip

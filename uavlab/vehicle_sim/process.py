@@ -239,11 +239,11 @@ def serve(folder: Path) -> None:
     city = storage.load(folder / "city.npz")
     checks.instance("city", city, City)
     read = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
-    parts = {
+    parts: dict[str, dict[str, Any]] = {
         name: {key: float(value) if value == "inf" else value for key, value in read[name].items()}
         for name in ("uav", "wind", "gps", "link")
     }
-    wind = Wind(**(parts["wind"] | {"mean": tuple(parts["wind"]["mean"])}))
+    wind = Wind(**parts["wind"])
     autopilot = Autopilot(gps=Gps(**parts["gps"]), heeds_limits=False)
     flight, radio = np.random.default_rng(read["rng"]).spawn(2)
     pilot = Pilot.standing(city, UAV(**parts["uav"]), wind, autopilot, np.array(read["at"]), flight)  # type: ignore[arg-type]

@@ -49,8 +49,20 @@ from uavlab.mission.items import (
     Item,
 )
 from uavlab.vehicle_sim.pilot import CRASHED, FLYING_MISSION, HOLDING, LANDING, READY, RETURNING, TICK, Pilot
+from uavlab.vehicle_sim.words import (
+    ARDUPILOT_MODES,
+    PX4_AUTO,
+    PX4_SUBMODES,
+    VERSION,
+    home_of,
+    position_of,
+    spoken,
+    state_of,
+    version,
+)
 
 SYSTEM, COMPONENT = 1, 1
+PER_SECOND = round(1 / TICK)
 MOST_ITEMS = 1000
 """That it has room for, as many autopilots."""
 
@@ -61,21 +73,8 @@ UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE, INVALID, INVALID_SEQUENCE, DENIED = 2,
 """Answers of the mission protocol (MAV_MISSION_RESULT)."""
 
 INVALID_PLACE, INVALID_ALTITUDE = 10, 12
-COMMAND_DENIED, COMMAND_UNKNOWN, TEMPORARILY_REJECTED = 2, 3, 1
+COMMAND_UNKNOWN, TEMPORARILY_REJECTED = 3, 1
 """Of commands (MAV_RESULT)."""
-
-PX4_SUBMODES = {READY: 3, FLYING_MISSION: 4, HOLDING: 3, RETURNING: 5, LANDING: 6, CRASHED: 6}
-ARDUPILOT_MODES = {READY: 5, FLYING_MISSION: 3, HOLDING: 5, RETURNING: 6, LANDING: 9, CRASHED: 9}
-"""Numbers of what it does."""
-
-PX4_AUTO = 4
-"""PX4's main mode of all these."""
-
-VERSION = 148
-"""Number of the message that says what an autopilot can do."""
-
-CAN = 4 | 8 | 8192 | 16384 | 32768
-"""Missions and commands as whole numbers, MAVLink 2, fences, rally points (MAV_PROTOCOL_CAPABILITY)."""
 
 FENCE_RETURNS = {ARDUPILOT: 1.0, PX4: 3.0}
 """Value of the parameter by which who leaves the fence goes home; with others it only says so."""
@@ -102,7 +101,8 @@ class Vehicle:
 
     def __init__(self, pilot: Pilot, autopilot: int, send: Callable[[bytes, Peer | None], None]) -> None:
         self.pilot, self.autopilot, self.send = pilot, autopilot, send
-        self.codec, self.reader = codec(SYSTEM, COMPONENT), {}
+        self.codec = codec(SYSTEM, COMPONENT)
+        self.readers: dict[Peer, Any] = {}
         self.plans: dict[int, list[Item]] = {kind: [] for kind in PLANS}
         self.upload: Upload | None = None
         self.done: tuple[Peer, int, int] | None = None
@@ -119,7 +119,7 @@ class Vehicle:
 
     def receive(self, data: bytes, peer: Peer, now: float) -> None:
         """A packet; what is no MAVLink, or not for it, is ignored."""
-        reader = self.reader.setdefault(peer, codec(SYSTEM, COMPONENT))
+        reader = self.readers.setdefault(peer, codec(SYSTEM, COMPONENT))
         for message in reader.parse_buffer(data) or []:
             if message.get_type() == "BAD_DATA":
                 continue
@@ -242,7 +242,7 @@ class Vehicle:
         """A plan as it is asked for; ArduPilot's missions begin with home, whatever was sent."""
         items = self.plans.get(kind, [])
         if kind == MISSION and self.autopilot == ARDUPILOT and items:
-            longitude, latitude, height = self.geographic(self.pilot.home)
+            longitude, latitude, height = self.pilot.city.to_geographic(self.pilot.home).tolist()
             return [Item(WAYPOINT, SEA, (0.0, 0.0, 0.0, 0.0), latitude, longitude, height), *items[1:]]
         return items
 
@@ -288,7 +288,7 @@ class Vehicle:
     def on_command_long(self, message: Any, peer: Peer, now: float) -> None:
         """Do what is told; the answer says whether, a text why not."""
         result = self.obeyed(message, peer)
-        for words in self.spoken():
+        for words in spoken(self.pilot):
             self.answer(words, None)
         ack = messages().MAVLink_command_ack_message(
             message.command, result, 255, 0, message.get_srcSystem(), message.get_srcComponent()
@@ -308,9 +308,9 @@ class Vehicle:
         if message.command == LAND_HERE:
             return self.told(pilot.land_here())
         if message.command == SET_MODE:
-            return self.mode_set(int(message.param2), int(message.param3))
+            return self.mode_set(message.param2, message.param3)
         if message.command == REQUEST_MESSAGE and first in (HOME_POSITION, VERSION):
-            self.answer(self.home_position() if first == HOME_POSITION else self.version(), peer)
+            self.answer(home_of(pilot) if first == HOME_POSITION else version(), peer)
             return ACCEPTED
         return COMMAND_UNKNOWN
 
@@ -324,14 +324,14 @@ class Vehicle:
         pilot.armed = False
         return ACCEPTED
 
-    def mode_set(self, main: int, sub: int) -> int:
+    def mode_set(self, main: float, sub: float) -> int:
         """A mode by its number; on the ground only that of a mission makes a difference."""
         known = ARDUPILOT_MODES if self.autopilot == ARDUPILOT else PX4_SUBMODES
         number = main if self.autopilot == ARDUPILOT else sub if main == PX4_AUTO else -1
         wanted = [mode for mode, at in known.items() if at == number and mode not in (READY, CRASHED)]
         actions = {HOLDING: self.pilot.hold, RETURNING: self.pilot.go_home, LANDING: self.pilot.land_here}
         if not wanted:
-            return self.told(f"no mode {main}, {sub}")
+            return self.told(f"no mode {main:g}, {sub:g}")
         if wanted[0] == FLYING_MISSION:
             return self.told(self.pilot.start())
         return ACCEPTED if self.pilot.body.path is None else self.told(actions[wanted[0]]())
@@ -361,74 +361,16 @@ class Vehicle:
     def say_all(self) -> None:
         """Position ten times a second, state once, and what happened."""
         reached, pilot = messages().MAVLink_mission_item_reached_message, self.pilot
-        said = [self.position(), *(reached(self.numbered(number)) for number in pilot.reached), *self.spoken()]
+        said = [position_of(pilot), *(reached(self.numbered(number)) for number in pilot.reached), *spoken(pilot)]
         pilot.reached.clear()
-        if self.told_item != pilot.current:
-            said.append(self.current_item())
-        if self.ticks % 10 == 0:
-            said += self.state()
-        for message in said:
+        regular = self.ticks % PER_SECOND == 0
+        if regular or self.told_item != pilot.current:
+            self.told_item = pilot.current
+            number = self.numbered(pilot.current)
+            said.append(messages().MAVLink_mission_current_message(number, len(self.plans[MISSION])))
+        for message in said + state_of(pilot, self.autopilot) * regular:
             self.answer(message, None)
-
-    def state(self) -> list[Any]:
-        """What it says once a second."""
-        pilot, words = self.pilot, messages()
-        base = 1 | (128 if pilot.armed else 0) | 8  # its own modes; armed; guided
-        if self.autopilot == ARDUPILOT:
-            mode = ARDUPILOT_MODES.get(pilot.mode, 5)
-        else:
-            mode = 4 << 16 | PX4_SUBMODES.get(pilot.mode, 3) << 24
-        status = 6 if pilot.mode == CRASHED else 4 if pilot.armed else 3
-        landed = 1 if pilot.body.path is None else 2
-        uav = pilot.body.uav
-        left = -1 if not np.isfinite(uav.battery) else max(round(100 * (1 - pilot.body.where.used / uav.battery)), 0)
-        sensors = 32  # GPS
-        return [
-            words.MAVLink_heartbeat_message(2, self.autopilot, base, mode, status, 3),
-            words.MAVLink_sys_status_message(sensors, sensors, sensors, 0, 65535, -1, left, 0, 0, 0, 0, 0, 0),
-            self.current_item(),
-            words.MAVLink_extended_sys_state_message(0, landed),
-            words.MAVLink_fence_status_message(int(pilot.breached), 0, 3 if pilot.breached else 0, 0),
-            words.MAVLink_gps_raw_int_message(
-                round(1e6 * pilot.body.where.time), 3, *self.degrees(pilot.body.state.seen_position),
-                65535, 65535, 65535, 65535, 12,
-            ),
-        ]  # fmt: skip
-
-    def current_item(self) -> Any:
-        self.told_item = self.pilot.current
-        return messages().MAVLink_mission_current_message(self.numbered(self.told_item), len(self.plans[MISSION]))
 
     def numbered(self, number: int) -> int:
         """An item's number as the ground station counts them."""
         return number + int(self.autopilot == ARDUPILOT)
-
-    def spoken(self) -> list[Any]:
-        """What the pilot said, cut to what fits."""
-        said = [messages().MAVLink_statustext_message(4, words.encode()[:50]) for words in self.pilot.words]
-        self.pilot.words.clear()
-        return said
-
-    def geographic(self, point: np.ndarray) -> tuple[float, float, float]:
-        longitude, latitude, height = self.pilot.city.to_geographic(point).tolist()
-        return longitude, latitude, height
-
-    def degrees(self, point: np.ndarray) -> tuple[int, int, int]:
-        """Latitude, longitude, and height in millimetres, as they travel."""
-        longitude, latitude, height = self.geographic(point)
-        return round(latitude * 1e7), round(longitude * 1e7), round(1000 * height)
-
-    def position(self) -> Any:
-        where, home = self.pilot.body.where, self.pilot.home
-        east, north, up = (round(100 * float(value)) for value in where.velocity)
-        above = round(1000 * float(where.seen[2] - home[2]))
-        return messages().MAVLink_global_position_int_message(
-            round(1000 * where.time), *self.degrees(where.seen), above, north, east, -up, 65535
-        )
-
-    def version(self) -> Any:
-        return messages().MAVLink_autopilot_version_message(CAN, 0, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, 0)
-
-    def home_position(self) -> Any:
-        place = self.degrees(self.pilot.home)
-        return messages().MAVLink_home_position_message(*place, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)

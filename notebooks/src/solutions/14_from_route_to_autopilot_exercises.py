@@ -280,12 +280,12 @@ plt.show()
 #
 # $$ t = -\frac\tau2\,\ln\left(1 - \left(\frac{m}{3\sigma}\right)^2\right). $$
 #
-# For $m \geq 3\sigma$ that would be the logarithm of 0 or of a negative number. There $3\,\sigma(t)$ never exceeds the
-# margin.
-#
 # In the figure that is where a margin meets the black curve. For small margins the time grows with the square of the
-# margin: it is 2.8 s for 1 m, 25.5 s for 3 m, and 74 s for 5 m. A margin of 15 m is more than 3σ in the
-# long run (14.1 m), so at each moment it holds, whatever the time.
+# margin: it is 2.8 s for 1 m, 25.5 s for 3 m, and 74 s for 5 m.
+#
+# For $m \geq 3\sigma$ it would be the logarithm of 0 or of a negative number. There $3\,\sigma(t)$ never exceeds the
+# margin. 15 m is such a margin: it is more than 3σ in the long run (14.1 m), so at each moment it holds, whatever the
+# time.
 #
 # At the end, 0.27 % of the flights are beyond the margin, as the rule says (with 100 000 flights, ± 0.03 % is chance).
 # But nearly twice as many have been beyond it at *some* time: a flight that came back counts for the second share only.
