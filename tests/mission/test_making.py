@@ -285,6 +285,8 @@ LOW = ((5, 5, 30), (5, 95, 30))
         (r"route must lead from a start to a goal", {"route": ((5, 5, 30),)}),
         (r"route must have a way between take-off and landing", {
             "route": Route([(5, 5, 0.5), (5, 5, 30), (5, 5, 0.5)], takeoff=1, landing=1)}),
+        (r"route must have a way between take-off and landing", {
+            "route": Route([(5, 5, 30), (5, 50, 30), (5, 95, 30), (50, 98, 30)], landing=5)}),
         (r"route must be a Route", {"route": [(5, 5, 30), (5, 95, 30)]}),
         (r"city must be a City", {"city": "Delft"}),
         (r"uav must be an? UAV", {"uav": "drone"}),

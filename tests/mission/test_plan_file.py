@@ -260,6 +260,14 @@ def test_circles_become_polygons_on_the_safe_side(file):
             assert half_way == pytest.approx(radius, abs=0.05)
 
 
+def test_home_of_an_unknown_height(file):
+    """QGroundControl writes null where it has no data of the terrain."""
+    plan = copy.deepcopy(FOREIGN)
+    plan["mission"]["plannedHomePosition"][2] = None
+    mission = read_plan(written(file, plan))
+    assert (mission.home, mission.heights) == (Place(8.545594, 47.3977419, 0.0), "unknown")
+
+
 @pytest.mark.parametrize("frame", [2, 3])
 def test_a_waypoint_without_a_place_is_refused(file, frame):
     """0° N, 0° E would be one."""

@@ -199,6 +199,22 @@ def test_legs_above_terrain_follow_it():
     assert straight["clearance"].value == 0.0
 
 
+def test_ground_that_bends_between_the_centres_of_columns():
+    """Between two columns that are 10 m high, a diagonal leg passes over 5 m; what follows it rises by as much."""
+    ground, occupied = np.zeros((20, 20)), np.zeros((20, 20, 8), dtype=bool)
+    ground[9, 10] = ground[10, 9] = 10.0
+    occupied[9, 9, 3] = occupied[10, 10, 3] = True  # a bridge, from 30 m on
+    city = City(occupied, 10.0, ground=ground, reference=DELFT)
+    mission = by_hand((45, 45, 20), (155, 155, 20))
+    straight = checked(mission, city)
+    assert straight["least height"].value == pytest.approx(15.0, abs=0.02)
+    assert straight["greatest height"].value == 110.0
+    assert straight["clearance"].value == pytest.approx(10.0, abs=0.02)
+    follows = checked(other_items(mission, lambda n, item: item._replace(frame=10)), city)
+    assert follows["least height"].value == 20.0
+    assert follows["clearance"].value == pytest.approx(5.0, abs=0.02)
+
+
 def test_home_is_where_it_stands_and_can_rise():
     found = checked()["home"]
     apart = table1().distance(samples([(5, 5, 10), (5, 5, 30)]), exact_within=60.0).min()
@@ -492,10 +508,11 @@ def test_the_bound_is_above_the_quantile_in_95_of_100():
 def test_the_energy_has_to_be_in_the_battery():
     used = checked()["energy"].value * 3600
     assert checked(uav=replace(LIGHT_QUADROTOR, battery=1.01 * used / 0.8))["energy"].met
-    short = checked(uav=replace(LIGHT_QUADROTOR, battery=0.99 * used / 0.8))
-    assert not short["energy"].met
-    assert short["energy"].value == pytest.approx(used / 3600)  # not cut off where the battery is empty
-    assert short["flights"].met
+    for share in (0.99, 0.4):
+        short = checked(uav=replace(LIGHT_QUADROTOR, battery=share * used / 0.8))
+        assert not short["energy"].met
+        assert short["energy"].value == pytest.approx(used / 3600)  # not cut off where the battery is empty
+        assert short["flights"].met
     unknown = checked(uav=replace(LIGHT_QUADROTOR, battery=np.inf))["energy"]
     assert unknown.met
     assert unknown.limit == math.inf
@@ -512,6 +529,14 @@ def test_a_return_takes_the_way_back_and_the_landing_at_home():
     assert back["energy"].value - there["energy"].value == pytest.approx(way_back.energy[0] / 3600, rel=0.02)
     apart = table1().distance(samples([(5, 5, 10), (5, 5, 68)]), exact_within=60.0).min()
     assert back["landing"].value == pytest.approx(apart, abs=0.02)
+
+
+def test_it_rises_to_return_where_the_mission_doesnt_say_so():
+    mission = by_hand((5, 5, 30), (40, 5, 30), (40, 50, 30), end=20, return_height=70.0)
+    back = checked(mission)
+    assert back["landing"].words.endswith("(5.0, 5.0, 70.0)")
+    assert "70.0 m on the way to item 3" in back["greatest height"].words
+    assert back["energy"].value > checked(replace(mission, return_height=30.0))["energy"].value
 
 
 def test_each_leg_has_its_own_speed():
@@ -556,7 +581,7 @@ def test_who_touches_the_ground_while_it_lands_has_landed():
 
 
 def test_on_the_way_a_touch_is_a_crash():
-    """A wall across the way, and a roof on which it doesn't land."""
+    """A wall across the way, and a roof on which it doesn't land, however low above it."""
     wall = Building.prism([(45, 0), (47, 0), (47, 100), (45, 100)], 29.0)
     city = City.from_buildings([wall], cell=1.0, origin=(0, 0, 0), size=(100, 100, 60), reference=DELFT)
     for height in (20.0, 29.2):
@@ -565,6 +590,18 @@ def test_on_the_way_a_touch_is_a_crash():
         assert "crashed after" in found["flights"].words
         assert found["energy"].words == "no flight arrived"
         assert not found["energy"].met
+
+
+def test_a_roof_on_the_way_isnt_landed_on():
+    roof = Building.prism([(30, 0), (70, 0), (70, 100), (30, 100)], 29.0)
+    city = City.from_buildings([roof], cell=1.0, origin=(0, 0, 0), size=(100, 100, 60), reference=DELFT)
+    mission, gps = by_hand((10, 50, 29.8), (90, 50, 29.8), speed=0.7, end=None), Gps(vertical_drift=3.0)
+    found = checked(mission, city, uav=SLOW, flights=20, rng=2, gps=gps)["flights"]
+    route = Route([(10, 50, 1.0), (10, 50, 29.8), (90, 50, 29.8)])
+    flights = monte_carlo(route, city, SLOW, BREEZE, Autopilot(speed=0.7, gps=gps), rng=2, flights=20)
+    above = flights.crashed & (flights.place[:, 0] > 30)
+    assert above.sum() > 0
+    assert found.value == flights.crashed.sum() < 20
 
 
 def test_how_many_fail_and_how_many_may():

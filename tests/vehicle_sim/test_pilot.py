@@ -190,8 +190,9 @@ def test_hold_land_and_go_on(campus, meadow, standing, flown):
     track, _, _ = flown(pilot, seconds=pilot.body.time + 10)
     assert pilot.mode == HOLDING
     assert np.ptp(track[-30:, 1:], axis=0).max() < 0.1
-    assert pilot.start() == ""  # to the waypoint that it flew to
+    assert pilot.start() == ""  # to the waypoint that it flew to, as fast as before
     track, _, _ = flown(pilot, until=lambda p: p.body.where.position[1] > 20)
+    assert np.linalg.norm(np.diff(track[:, 1:], axis=0), axis=1).max() < 0.1 * 5.2
     assert np.linalg.norm(track[:, 1:] - (60, 0, 30), axis=1).min() < 2.0
     assert pilot.land_here() == ""
     track, words, _ = flown(pilot)

@@ -310,8 +310,8 @@ class FlightLog:
         Returns
         -------
         uavlab.flight.Flight
-            Where the vehicle believed to be; its reference is the nearest point of the plan. Offsets and thrust aren't
-            known, NaN.
+            Where the vehicle believed to be, by the time since the first sample; its reference is the nearest point of
+            the plan. Offsets and thrust aren't known, NaN.
 
         Raises
         ------
@@ -333,21 +333,18 @@ class FlightLog:
         >>> city, route = table1_city(), Route([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
         >>> mission = Mission.from_route(route, city, LIGHT_QUADROTOR, home=(4.36, 52.01))
         >>> heard = Telemetry(9.0, 4.36, 52.01, 31.0, 31.0, (5.0, 0.0, 0.0), 97.0, "mission", True, 2)
-        >>> FlightLog(mission, city, [heard, heard._replace(time=9.1)]).flight().duration
-        9.1
+        >>> FlightLog(mission, city, [heard, heard._replace(time=9.5)]).flight().duration
+        0.5
         """
         if len(self.samples) < 2:
             raise ValueError(f"samples must be at least two for a flight, got {len(self.samples)}")
         log = np.full((len(self.samples), len(COLUMNS)), np.nan)
         position = self.position
-        log[:, 0], log[:, 1:4], log[:, 4:7] = (
-            self.time,
-            position,
-            nearest_on(self.mission.path(self.city).points, position),
-        )
+        log[:, 0], log[:, 1:4] = self.time - self.time[0], position
+        log[:, 4:7] = nearest_on(self.mission.path(self.city).points, position)
         log[:, -1] = [np.linalg.norm(one.velocity) for one in self.samples]
         outcome = self.outcome
-        reason = "" if outcome == "arrived" else f"{outcome} after {self.time[-1]:.1f} s at {checks.show(position[-1])}"
+        reason = "" if outcome == "arrived" else f"{outcome} after {log[-1, 0]:.1f} s at {checks.show(position[-1])}"
         return Flight(outcome, reason, log, Route(position).clearance(self.city), None)
 
     def to_csv(self, path: str | Path) -> None:

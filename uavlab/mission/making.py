@@ -211,7 +211,7 @@ def waypoints(legs: Corridor, way: Route, uav: UAV, speed: npt.ArrayLike | None)
     checks.positive("speed", asked)
     if asked.max() > uav.top_speed:
         raise ValueError(f"speed must be at most the UAV's top speed of {uav.top_speed:g} m/s, got {asked.max():g}")
-    first, last = way.takeoff, count - way.landing
+    first, last = way.takeoff, max(count - way.landing, 0)
     moving = np.flatnonzero(way.leg_lengths[first:last] > 0)  # legs of no length have no direction
     if len(moving) == 0:
         raise ValueError("route must have a way between take-off and landing, and has none")
@@ -251,9 +251,10 @@ def height_to_return(site: Site, points: np.ndarray, keep: float) -> float:
     return float(max(top, points[:, 2].max()) - site.at[2])
 
 
-def climb_to_return(site: Site, goal: np.ndarray, return_height: float) -> np.ndarray:
-    """Where it rises to above the goal, (1, 3) [m]; (0, 3) where it is high enough."""
-    top = site.at[2] + return_height
+def climb_to_return(legs: Corridor, site: Site, points: np.ndarray, return_height: float, uav: UAV) -> np.ndarray:
+    """Where it rises to above the last of the points (N, 3), (1, 3) [m]; (0, 3) where it is high enough."""
+    check_return(legs, site, points, return_height, uav)
+    goal, top = points[-1], site.at[2] + return_height
     return np.array([[*goal[:2], top]]) if top > goal[2] else np.empty((0, 3))
 
 
@@ -280,6 +281,11 @@ def check_return(legs: Corridor, site: Site, points: np.ndarray, return_height: 
     zone = zone_on_way(city, way)
     if zone:
         raise ValueError(f"end='return' flies straight home through no-fly zone {zone!r}: use {cure}")
+
+
+def rally_points(site: Site, points: Sequence[npt.ArrayLike]) -> list[tuple[np.ndarray, Place]]:
+    """Points to land at in trouble, see `rally_point`."""
+    return [rally_point(site, f"rally[{n}]", each) for n, each in enumerate(checks.listed("rally", points, "points"))]
 
 
 def rally_point(site: Site, name: str, point: npt.ArrayLike) -> tuple[np.ndarray, Place]:

@@ -40,7 +40,6 @@ from uavlab.mission.items import (
 )
 from uavlab.mission.making import (
     check_ceiling,
-    check_return,
     checked_way,
     climb_to_return,
     from_home,
@@ -48,7 +47,7 @@ from uavlab.mission.making import (
     height_to_return,
     kept_clearance,
     located,
-    rally_point,
+    rally_points,
     waypoints,
 )
 from uavlab.route import Route, Way, promises_of
@@ -237,11 +236,12 @@ class Mission:
         ------
         ValueError
             If `route` doesn't arrive, has no length, isn't clear, is below the ground or above the `ceiling`, or begins
-            or ends where no UAV can rise; `city` has no place on Earth and `home` isn't given, or `home` is no place or
-            over 1 km from the start; `altitudes` are "sea" and no height above sea is known; `speed` is not above 0,
-            above the UAV's top speed or not one for each leg; `end` or `altitudes` is unknown; `corner_radius`,
-            `corridor`, `ceiling` or `fence_margin` is not above 0; `hold` or `min_clearance` is negative; or a point of
-            `rally` isn't free.
+            or ends where no UAV can rise or land, for a wall or a no-fly zone; `end` is "return", and something hangs
+            over the goal or home, a no-fly zone is on the straight way, or that is above the `ceiling`; `city` has no
+            place on Earth and `home` isn't given, or `home` is no place or over 1 km from the start; `altitudes` are
+            "sea" and no height above sea is known; `speed` is not above 0, above the UAV's top speed or not one for
+            each leg; `end` or `altitudes` is unknown; `corner_radius`, `corridor`, `ceiling` or `fence_margin` is not
+            above 0; `hold` or `min_clearance` is negative; or a point of `rally` isn't free, or is in a no-fly zone.
 
         See Also
         --------
@@ -282,23 +282,18 @@ class Mission:
         site, notes = located(city, home, points[0], altitudes)
         points, speeds = from_home(legs, site, points, speeds)
         below = ground_at_ends(city, uav, points, end)
-        return_height, climb = height_to_return(site, points, keep), np.empty((0, 3))
-        if end == "return":
-            check_return(legs, site, points, return_height, uav)
-            climb = climb_to_return(site, points[-1], return_height)
+        return_height = height_to_return(site, points, keep)
+        climb = climb_to_return(legs, site, points, return_height, uav) if end == "return" else points[:0]
         flown = np.vstack([points, climb])
         stops = legs.stops(flown, radius)[: len(points)]
         holds = np.where(stops, STOP, 0.0)
         holds[-1] = max(holds[-1], hold)
-        items = site.way(frame, points, speeds, holds, reaches(flown, radius)) + site.ending(
-            end, frame, points[-1], below, climb
-        )
-        rallied = [
-            rally_point(site, f"rally[{n}]", point) for n, point in enumerate(checks.listed("rally", rally, "points"))
-        ]
+        items = site.way(frame, points, speeds, holds, reaches(flown, radius))
+        items += site.ending(end, frame, points[-1], below, climb)
+        rallied = rally_points(site, rally)
         around = np.vstack([site.at, points, *[point for point, _ in rallied]])[:, :2]
-        back = [site.at] * (end == "return")
-        closed, crossed = exclusions(city, site.plan, np.vstack([points, *back]))
+        over = np.vstack([points, *[site.at] * (end == "return")])
+        closed, crossed = exclusions(city, site.plan, over)
         notes += [f"the fence leaves out {name}: the way crosses it in plan" for name in crossed]
         notes += [f"it stops at {stops.sum()} corners that it can't round"] * bool(stops.any())
         return cls(

@@ -108,14 +108,15 @@ def fields_of_plan(path: Path) -> dict[str, Any]:
             raise ValueError(f"its fileType is {plan.get('fileType')!r:.40}, not 'Plan'")
         mission, ours = part_of(plan, "mission"), part_of(plan, "uavlab", {})
         notes = list(ours.get("notes", []))
+        latitude, longitude, height = part_of(mission, "plannedHomePosition")
         return {
             "items": tuple(item_of(number, item) for number, item in enumerate(entries(mission, "items"))),
-            "home": place_at(part_of(mission, "plannedHomePosition")),
+            "home": Place(longitude, latitude, 0.0 if height is None else height),
             "fence": tuple(fence_of(part_of(plan, "geoFence", {}), notes)),
             "rally": tuple(place_at(point) for point in entries(part_of(plan, "rallyPoints", {}), "points")),
             "speed": mission.get("hoverSpeed", 5.0) or 5.0,
             "corner_radius": ours.get("corner_radius", 2.0),
-            "heights": ours.get("heights", "above sea"),
+            "heights": ours.get("heights", "unknown" if height is None else "above sea"),
             "place": None if ours.get("place") is None else Place(*ours["place"]),
             "return_height": ours.get("return_height", 0.0),
             "name": ours.get("name", path.stem),

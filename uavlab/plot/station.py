@@ -66,6 +66,7 @@ def ground_station(log: FlightLog) -> Figure:
     panels = [figure.add_subplot(grid[row, 1]) for row in range(4)]
     position, home = log.position, log.mission.home_on(log.city)
     speed = np.array([np.linalg.norm(one.velocity) for one in log.samples])
+    began = log.time[0] if len(log.samples) else 0.0
     series = (
         ("height above home [m]", position[:, 2] - home[2]),
         ("off the plan [m]", log.deviation),
@@ -73,8 +74,8 @@ def ground_station(log: FlightLog) -> Figure:
         ("battery [%]", log.battery),
     )
     for axes, (label, values) in zip(panels, series, strict=True):
-        axes.plot(log.time, values, color=FLOWN)
-        for moment in log.breaches:
+        axes.plot(log.time - began, values, color=FLOWN)
+        for moment in log.breaches - began:
             axes.axvline(moment, color=BREACH, linestyle=":")
         axes.set_ylabel(label, fontsize=8)
         axes.grid(alpha=0.3)
@@ -82,7 +83,7 @@ def ground_station(log: FlightLog) -> Figure:
     for axes in panels[:-1]:
         axes.sharex(panels[-1])
         axes.tick_params(labelbottom=False)
-    panels[-1].set_xlabel("time since the vehicle was switched on [s]")
+    panels[-1].set_xlabel("time since the station began to follow [s]")
     return finished(figure)
 
 
@@ -110,7 +111,9 @@ def seen_from_above(axes: Axes, log: FlightLog) -> None:
         parts.append((CRASH_COLOR, "", "x", "crash"))
     latest = log.samples[-1] if len(log.samples) else None
     mode = "" if latest is None else latest.mode if latest.armed else log.outcome
-    axes.set_title("nothing heard yet" if latest is None else f"after {latest.time:.0f} s: {mode}", fontsize=10)
+    axes.set_title(
+        "nothing heard yet" if latest is None else f"after {latest.time - log.time[0]:.0f} s: {mode}", fontsize=10
+    )
     axes.margins(0.02)
     axes.autoscale()
     handles = [Line2D([], [], color=c, linestyle=line, marker=m, label=label) for c, line, m, label in parts]

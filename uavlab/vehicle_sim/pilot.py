@@ -177,9 +177,15 @@ class Pilot:
         above = np.array([*here[:2], max(here[2], self.home[2] + self.return_height)])
         there = np.array([*goal[:2], above[2]])
         points = np.vstack([above, there])
-        self.queue = [Stage(points, np.array([CLIMB, self.speed]), (), 0.0, False), self.landing(there)]
+        self.queue = [Stage(points, np.array([CLIMB, self.asked_speed]), (), 0.0, False), self.landing(there)]
         self.next_stage()
         return ""
+
+    @property
+    def asked_speed(self) -> float:
+        """What the mission asked for last, before its current item [m/s]."""
+        asked = [item.parameters[1] for item in self.items[: self.current] if item.command == CHANGE_SPEED]
+        return next((speed for speed in reversed(asked) if speed > 0), self.speed)
 
     def point_of(self, item: Item) -> np.ndarray:
         """The place of an item on the map; altitudes above home are from where it stands."""
@@ -190,7 +196,7 @@ class Pilot:
 
     def stages(self) -> list[Stage]:
         """From the current item to the end."""
-        found, legs, speed = [], [], self.speed
+        found, legs, speed = [], [], self.asked_speed
         numbered = list(enumerate(self.items))[self.current :]
         begin = self.body.state.target.copy()
         for number, item in numbered:
