@@ -215,12 +215,17 @@ def test_short_legs_are_rounded_less(block):
 
 
 def test_the_corner_before_a_climb_home_is_rounded_clear_or_a_stop():
-    """Up at the goal, right below an eave."""
+    """Out from under an eave, and up right before it."""
     eave = Building.prism([(20, 0), (60, 0), (60, 40), (20, 40)], 34, bottom=22.0)
     city = City.from_buildings([eave], cell=1.0, origin=(0, 0, 0), size=(60, 60, 60), reference=(4.36, 52.01))
-    route = Route([(50, 50, 20), (50, 45, 20), (18, 45, 20), (18, 20, 20), (19.0, 20, 20)], min_clearance=0.5)
-    mission = Mission.from_route(route, city, RISK_QUADROTOR, corner_radius=5.0, corridor=0.01, end="return")
-    check_corners(mission, city, 0.5)
+    route = Route([(50, 50, 20), (30, 45, 20), (30, 20, 20), (19, 20, 20)], min_clearance=0.5)
+    stopping = Mission.from_route(route, city, RISK_QUADROTOR, corner_radius=5.0, end="return")
+    assert placed(stopping)[-2].parameters[0] == 1.0
+    assert Mission.from_route(route, city, RISK_QUADROTOR, corner_radius=5.0, end="stay").items[-2].parameters[0] == 0.0
+    rounding = Mission.from_route(route, city, RISK_QUADROTOR, corner_radius=0.8, end="return")
+    assert placed(rounding)[-2].parameters[0] == 0.0
+    for mission in (stopping, rounding):
+        check_corners(mission, city, 0.5)
 
 
 @pytest.mark.parametrize("turn", np.radians([1.0, 30.0, 60.0, 89.0, 91.0, 120.0, 179.0]))

@@ -370,7 +370,7 @@ def test_takeoff_and_landing_legs_of_a_route_are_no_waypoints():
 
 def test_legs_of_no_length_and_their_speeds_are_left_out():
     points = [(5, 5, 30), (5, 50, 30), (5, 50, 30), (5, 95, 30), (50, 98, 30), (50, 98, 30)]
-    mission = Mission.from_route(Route(points), table1(), LIGHT_QUADROTOR, speed=[3, 9, 4, 5, 9])
+    mission = Mission.from_route(Route(points), table1(), LIGHT_QUADROTOR, speed=[3, 1, 4, 5, 1])
     assert way(mission, table1()) == pytest.approx(np.array([(5, 5, 30), (5, 95, 30), (50, 98, 30)]), abs=CENTIMETRE)
     assert [item.parameters[1] for item in placed(mission, 178)] == [3.0, 5.0]  # of 3 and 4 the lower
     assert mission.speed == 5.0

@@ -310,7 +310,7 @@ def test_byte_order_marks_and_line_ends(file, encoding, newline):
         ('{"fileType": "Mission"}', "its fileType is 'Mission', not 'Plan'"),
         ('{"fileType": "Plan"}', "it has no 'mission'"),
         ('{"fileType": "Plan", "mission": 5}', "an object was expected"),
-        ('{"fileType": "Plan", "mission": {"items": {}}}', "items must be a list"),
+        ('{"fileType": "Plan", "mission": {"items": {}, "plannedHomePosition": [1, 2, 3]}}', "items must be a list"),
         (json.dumps(FOREIGN) * 2, "more than one"),
         (b"\xff\xfe{\x00}\x00", "is not UTF-8 text.*UTF-16"),
         (b"\x00\x01\x02", "is not valid JSON"),

@@ -11,8 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from uavlab.mavlink.coding import item_of, message_of, polygons_of
 from uavlab.mavlink.dialect import (
     ACCEPTED,
@@ -78,6 +76,9 @@ COMMAND_UNKNOWN, TEMPORARILY_REJECTED = 3, 1
 
 FENCE_RETURNS = {ARDUPILOT: 1.0, PX4: 3.0}
 """Value of the parameter by which who leaves the fence goes home; with others it only says so."""
+
+LARGEST_PARAMETER = 1e6
+"""What is more, or negative, isn't taken: a height of 10 km in centimetres is the most."""
 
 Peer = tuple[str, int]
 
@@ -263,7 +264,7 @@ class Vehicle:
             self.upload = None
 
     def on_param_set(self, message: Any, peer: Peer, now: float) -> None:
-        if message.param_id in self.parameters and np.isfinite(message.param_value):
+        if message.param_id in self.parameters and 0 <= message.param_value <= LARGEST_PARAMETER:
             self.parameters[message.param_id] = message.param_value
             height, action = self.parameters.values()
             self.pilot.return_height = height / (100.0 if self.autopilot == ARDUPILOT else 1.0)
