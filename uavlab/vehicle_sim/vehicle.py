@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from uavlab.mavlink.coding import item_of, message_of, polygons_of
+from uavlab.mavlink.coding import message_of, polygons_of
 from uavlab.mavlink.dialect import (
     ACCEPTED,
     ARDUPILOT,
@@ -35,17 +35,11 @@ from uavlab.mavlink.dialect import (
 )
 from uavlab.mavlink.patience import Patience
 from uavlab.mission.items import (
-    CHANGE_SPEED,
-    COMMANDS,
-    EXCLUDE,
-    FRAMES,
-    INCLUDE,
-    PLACED,
-    RALLY,
     SEA,
     WAYPOINT,
     Item,
 )
+from uavlab.vehicle_sim.judging import DENIED, INVALID, INVALID_SEQUENCE, NO_SPACE, UNSUPPORTED, judged
 from uavlab.vehicle_sim.pilot import CRASHED, FLYING_MISSION, HOLDING, LANDING, READY, RETURNING, TICK, Pilot
 from uavlab.vehicle_sim.words import (
     ARDUPILOT_MODES,
@@ -67,10 +61,6 @@ MOST_ITEMS = 1000
 GIVE_UP = 3.0
 """An item that doesn't come is asked for so long [s]."""
 
-UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE, INVALID, INVALID_SEQUENCE, DENIED = 2, 3, 4, 5, 13, 14
-"""Answers of the mission protocol (MAV_MISSION_RESULT)."""
-
-INVALID_PLACE, INVALID_ALTITUDE = 10, 12
 COMMAND_UNKNOWN, TEMPORARILY_REJECTED = 3, 1
 """Of commands (MAV_RESULT)."""
 
@@ -167,7 +157,7 @@ class Vehicle:
             if message.seq > len(upload.items):
                 self.ask(now)
             return
-        result, item = self.judged(message, upload.kind)
+        result, item = judged(message, upload.kind)
         if item is None:
             self.upload = None
             self.acknowledge(message, peer, message.mission_type, result)
@@ -184,24 +174,6 @@ class Vehicle:
             self.acknowledge(message, peer, upload.kind, ACCEPTED)
         else:
             self.acknowledge(message, peer, upload.kind, INVALID)
-
-    def judged(self, message: Any, kind: int) -> tuple[int, Item | None]:
-        """An item, or None and why it isn't taken."""
-        known = {MISSION: tuple(COMMANDS), FENCE: (INCLUDE, EXCLUDE), RALLY_POINTS: (RALLY,)}[kind]
-        if message.command not in known:
-            return UNSUPPORTED, None
-        try:
-            item = item_of(message)
-        except ValueError as error:
-            return INVALID_ALTITUDE if "altitude" in str(error) else INVALID_PLACE, None
-        placed = kind != MISSION or item.command in PLACED
-        if placed and item.frame not in FRAMES.values():
-            return UNSUPPORTED_FRAME, None
-        if item.command == CHANGE_SPEED and not item.parameters[1] > 0:
-            return INVALID + 2, None
-        if item.command == WAYPOINT and item.parameters[0] < 0:
-            return INVALID + 1, None
-        return ACCEPTED, item
 
     def take(self, kind: int, items: list[Item]) -> bool:
         """Keep a plan, and use it; whether it could."""
