@@ -6,13 +6,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from uavlab.city import City, Place, Terrain
 from uavlab.flight import GPS
-from uavlab.mission import FencePolygon, Mission
+from uavlab.mission import FencePolygon, Item, Mission
 from uavlab.mission.corridor import cut_off, distance_to_leg
 from uavlab.route import Route
 from uavlab.vehicle_sim.pilot import CRASHED, HOLDING, READY, rounded
 from uavlab.weather import Wind
 
+PLACE = Place(8.5, 47.25, 420.0)
 SQUARE = [(0, 0, 30), (60, 0, 30), (60, 60, 30), (0, 60, 40)]
 
 
@@ -103,6 +105,42 @@ def test_it_lands_on_a_roof_and_takes_off_from_it(campus, town, standing, flown)
     assert pilot.home[2] == pytest.approx(20.0)
     track, _, _ = flown(pilot)
     assert track[-1, 1:] == pytest.approx([10, 10, 0], abs=0.3)
+
+
+def test_altitudes_above_terrain_follow_it(campus, standing, flown):
+    """Over a ridge of 20 m between two waypoints that are 30 m above the ground."""
+    x = np.linspace(0.0, 200.0, 41)
+    ridge = np.tile(20.0 * np.exp(-(((x - 100.0) / 25.0) ** 2)), (41, 1))
+    ground = Terrain.from_raster(ridge, (0.0, 0.0, 200.0, 200.0), beyond="nearest")
+    city = City.from_buildings([], cell=5.0, origin=(0, 0, -5), size=(200, 200, 100), terrain=ground, reference=PLACE)
+    route = Route([(20, 100, 30 + ridge[0, 4]), (180, 100, 30 + ridge[0, 36])]).resample(5.0)
+    over = route.points.copy()
+    over[:, 2] += 30 - city.height_above_ground(over)
+    mission = Mission.from_route(Route(over), city, campus.uav, speed=5.0, altitudes="terrain", corridor=50.0)
+    assert sum(item.command == 16 for item in mission.items) <= 2
+    track, _, _ = flown(ready(standing(city, over[0]), mission))
+    way = track[(track[:, 1] > 30) & (track[:, 1] < 170), 1:]
+    assert city.height_above_ground(way) == pytest.approx(30.0, abs=1.5)
+    assert way[:, 2].max() > 48
+
+
+def test_what_stands_between_a_waypoint_and_the_landing_changes_nothing(campus, meadow, standing, flown):
+    mission = Mission.from_route(Route(SQUARE), meadow, campus.uav, speed=5.0)
+    slower = Item(178, 2, (1.0, 2.0, -1.0, 0.0))
+    mission = replace(mission, items=(*mission.items[:-1], slower, mission.items[-1]))
+    track, words, reached = flown(ready(standing(meadow, (0, 0, 5)), mission))
+    assert words == ["landed"]
+    assert reached == [0, 2, 3, 4, 6]
+    assert track[-1, 1:] == pytest.approx([0, 60, 0], abs=0.3)
+
+
+def test_a_mission_that_just_ends_hovers_there(campus, meadow, standing, flown):
+    mission = Mission.from_route(Route(SQUARE), meadow, campus.uav, speed=5.0, end="stay")
+    for items in (mission.items, mission.items[:-1]):
+        pilot = ready(standing(meadow, (0, 0, 5)), replace(mission, items=items))
+        track, _, _ = flown(pilot, seconds=120.0)
+        assert track[-1, 1:] == pytest.approx([0, 60, 40], abs=0.3)
+        assert pilot.armed
 
 
 def test_it_crashes_where_there_is_a_wall(campus, town, standing, flown):

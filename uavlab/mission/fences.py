@@ -12,14 +12,14 @@ from uavlab.city.buildings import convex_parts
 from uavlab.city.place import Place
 from uavlab.mission.items import FencePolygon, on_wire
 
-SHARPNESS = 1.1
-"""How far the fence may be from a corner of the hull [margins]; where it would be farther, that is cut off."""
+CORNERS = 2
+"""Of the fence, for a quarter of a circle around a corner of the hull."""
 
 
 def inclusion(place: Place, points: np.ndarray, margin: float) -> FencePolygon:
     """The convex hull of points (N, 2) [m], wider by a margin: with it the straight way home is inside, too."""
-    hull = shapely.MultiPoint(points).convex_hull
-    hull = hull.buffer(margin, cap_style="square", join_style="mitre", mitre_limit=SHARPNESS)
+    reach = margin / np.cos(np.pi / (4 * CORNERS))  # corners lie on a circle, the edges between them are nearer
+    hull = shapely.MultiPoint(points).buffer(reach, quad_segs=CORNERS).convex_hull
     return polygon_at(place, hull, True, "fence")
 
 

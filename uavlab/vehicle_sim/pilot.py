@@ -18,8 +18,20 @@ from uavlab.flight.autopilot import Autopilot
 from uavlab.flight.state import BATTERY_EMPTY, FLYING
 from uavlab.mission.corridor import corner, floor_below
 from uavlab.mission.fences import polygon_on
-from uavlab.mission.items import CHANGE_SPEED, LAND, LOITER, PLACED, RETURN, TAKEOFF, WAYPOINT, FencePolygon, Item
+from uavlab.mission.items import (
+    CHANGE_SPEED,
+    LAND,
+    LOITER,
+    PLACED,
+    RETURN,
+    TAKEOFF,
+    TERRAIN,
+    WAYPOINT,
+    FencePolygon,
+    Item,
+)
 from uavlab.mission.model import Mission
+from uavlab.mission.way import CLIMB, LAST_METRES, SINK, TOUCH_DOWN
 from uavlab.vehicle import UAV
 from uavlab.vehicle_sim.body import OVER, Body
 from uavlab.weather import Wind
@@ -33,10 +45,6 @@ NOT_FLYING = "it isn't flying"
 TICK = 0.1
 """From fix to fix of GPS, and from look to look at the fence [s]."""
 
-CLIMB, SINK, TOUCH_DOWN = 3.0, 2.0, 0.7
-"""Vertical speeds: taking off, descending, and the last metres [m/s]."""
-
-LAST_METRES = 5.0
 BELOW = 5.0
 """The reference of a landing goes on below the ground, as GPS may be wrong [m]."""
 
@@ -64,6 +72,13 @@ class Stage(NamedTuple):
     """At its end [s]; infinite to stay."""
     low: bool
     """Whether it takes off or lands, and may touch the ground."""
+
+
+BETWEEN = -1
+"""Number of what is passed between items."""
+
+Passed = tuple[int, np.ndarray, float, Item]
+"""Number of an item, its point (3,) [m], speed on the way there [m/s], and the item."""
 
 
 @dataclass
@@ -197,32 +212,48 @@ class Pilot:
     def stages(self) -> list[Stage]:
         """From the current item to the end."""
         found, legs, speed = [], [], self.asked_speed
-        numbered = list(enumerate(self.items))[self.current :]
-        begin = self.body.state.target.copy()
-        for number, item in numbered:
+        begin = here = self.body.state.target.copy()
+        for number, item in list(enumerate(self.items))[self.current :]:
+            point = self.point_of(item) if item.command in PLACED else here
             if item.command == CHANGE_SPEED:
                 speed = item.parameters[1] if item.parameters[1] > 0 else speed
-            elif item.command == TAKEOFF:
-                point = self.point_of(item)
-                up = np.array([*begin[:2], point[2]])
-                found.append(Stage(up[None], np.array([CLIMB]), ((0.0, number),), 0.0, True))
-                begin = up
-            elif item.command in (WAYPOINT, LOITER):
-                point = self.point_of(item)
-                legs.append((number, point, speed, item))
-                stays = item.command == LOITER
-                following = self.items[number + 1].command if number + 1 < len(self.items) else LAND
-                if stays or item.parameters[0] > 0 or following not in (WAYPOINT, CHANGE_SPEED, LOITER):
-                    found.append(rounded(begin, legs, np.inf if stays else item.parameters[0]))
-                    begin, legs = point, []
+                continue
+            if item.command in (WAYPOINT, LOITER):
+                legs += [*self.over_ground(here, point, speed, item), (number, point, speed, item)]
+                here = point
+                if item.command == WAYPOINT and not item.parameters[0] > 0:
+                    continue
+            if legs:
+                stays = np.inf if item.command == LOITER else item.parameters[0] if item.command == WAYPOINT else 0.0
+                found.append(rounded(begin, legs, stays))
+                begin, legs = here, []
+            if item.command == TAKEOFF:
+                begin = here = np.array([*here[:2], point[2]])
+                found.append(Stage(here[None], np.array([CLIMB]), ((0.0, number),), 0.0, True))
             elif item.command == LAND:
-                there = np.array([*self.point_of(item)[:2], begin[2]])
+                there = np.array([*point[:2], here[2]])
                 over = Stage(there[None], np.array([speed]), (), 0.0, False)
-                found += [over] * bool(np.hypot(*(there - begin)[:2]) > ARRIVED)
+                found += [over] * bool(np.hypot(*(there - here)[:2]) > ARRIVED)
                 found.append(self.landing(there)._replace(reached=((0.0, number),)))
             elif item.command == RETURN:
                 found.append(Stage(np.empty((0, 3)), np.empty(0), ((0.0, number),), 0.0, False))
-        return found
+        return [*found, rounded(begin, legs, 0.0)] if legs else found
+
+    def over_ground(self, start: np.ndarray, end: np.ndarray, speed: float, item: Item) -> list[Passed]:
+        """Points between two others that keep their height above the ground, of an item whose altitude is above it."""
+        ground = self.city.ground
+        count = (
+            int(np.ceil(np.hypot(*(end - start)[:2]) / self.city.cell))
+            if item.frame == TERRAIN and ground is not None
+            else 0
+        )
+        if count < 2:
+            return []
+        share = np.linspace(0.0, 1.0, count + 1)[1:-1, None]
+        points = start + share * (end - start)
+        first, last = self.city.height_above_ground(np.array([start, end]))
+        points[:, 2] += first + share[:, 0] * (last - first) - self.city.height_above_ground(points)
+        return [(BETWEEN, point, speed, item) for point in points]
 
     def landing(self, point: np.ndarray) -> Stage:
         """Straight down, slowly at the end."""
@@ -325,13 +356,13 @@ class Pilot:
         self.words.append(words)
 
 
-def rounded(begin: np.ndarray, legs: list[tuple[int, np.ndarray, float, Item]], hold: float) -> Stage:
+def rounded(begin: np.ndarray, legs: list[Passed], hold: float) -> Stage:
     """Waypoints with their corners rounded, but for the last one, where it stops."""
     places = np.vstack([begin, *[point for _, point, _, _ in legs]])
     points, speeds, marks = [], [], []
     for at, (number, here, speed, item) in enumerate(legs, 1):
         lengths = [float(np.linalg.norm(places[n + 1] - places[n])) for n in range(at - 1, min(at + 1, len(legs)))]
-        if at == len(legs) or min(lengths) < CONTACT:
+        if at == len(legs) or number == BETWEEN or min(lengths) < CONTACT:
             arc = here[None]
         else:
             into, out, reach = corner(places[at - 1], here, places[at + 1], item.parameters[1] or USUAL_RADIUS)
@@ -339,6 +370,7 @@ def rounded(begin: np.ndarray, legs: list[tuple[int, np.ndarray, float, Item]], 
             arc = here - (1 - share) ** 2 * reach * into + share**2 * reach * out
         points.append(arc)
         speeds.append(np.full(len(arc), speed))
-        done = np.vstack([begin, *points[:-1], arc[: len(arc) // 2 + 1]])
-        marks.append((float(np.linalg.norm(np.diff(done, axis=0), axis=1).sum()), number))
+        if number != BETWEEN:
+            done = np.vstack([begin, *points[:-1], arc[: len(arc) // 2 + 1]])
+            marks.append((float(np.linalg.norm(np.diff(done, axis=0), axis=1).sum()), number))
     return Stage(np.vstack(points), np.concatenate(speeds), tuple(marks), hold, False)
