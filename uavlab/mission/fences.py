@@ -48,10 +48,10 @@ def pieces(zone: NoFlyZone) -> Sequence[shapely.Polygon]:
 
 
 def polygon_at(place: Place, polygon: shapely.Polygon, inside: bool, name: str) -> FencePolygon:
-    """A polygon on the map [m] as one of a fence."""
+    """A polygon on the map [m] as one of a fence; corners that are the same as they travel are one."""
     degrees = place.longitude_latitude(shapely.get_coordinates(polygon.exterior)[:-1])
     corners = tuple((on_wire(latitude), on_wire(longitude)) for longitude, latitude in degrees.tolist())
-    return FencePolygon(corners, inside, name)
+    return FencePolygon(tuple(dict.fromkeys(corners)), inside, name)
 
 
 def polygon_on(place: Place, polygon: FencePolygon) -> shapely.Polygon:
