@@ -110,7 +110,7 @@ def test_the_moment_a_fence_is_met(meadow, square, served, tmp_path):
     assert edge <= at[0] < edge + 12  # told once a second
     assert any("fence breached" in words for one in samples for words in one.said)
     assert log.outcome == "landed"
-    assert "fence left" in [text.get_text() for text in ground_station(log).axes[0].get_legend().get_texts()]
+    assert "fence left" in [text.get_text() for text in ground_station(log).legends[0].get_texts()]
 
 
 def test_a_vehicle_that_falls_silent(meadow, square, served):

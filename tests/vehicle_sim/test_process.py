@@ -213,3 +213,21 @@ def test_damaged_settings_are_said(tmp_path):
     _, error = process.communicate(timeout=120)
     assert process.returncode == 2
     assert "city.npz" in error
+
+
+def test_where_it_really_was_is_written_in_the_end(meadow, campus, tmp_path):
+    mission = Mission.from_route(Route([(0, 0, 15), (60, 0, 15)]), meadow, campus.uav, speed=8.0)
+    started = simulated_vehicle(meadow, campus.uav, CALM, (0, 0), pace=20.0, truth=tmp_path / "truth.csv")
+    with started as vehicle, connect(vehicle.address) as link:
+        upload(mission, link)
+        start(link)
+        log = FlightLog(mission, meadow, list(follow(link)))
+    truth = np.genfromtxt(tmp_path / "truth.csv", delimiter=",", names=True)
+    assert np.diff(truth["time_s"]).min() > 0
+    assert truth["x_m"][-1] == pytest.approx(60.0, abs=6.0)
+    both = np.isin(truth["time_s"].round(1), log.time.round(1))
+    heard = log.position[np.isin(log.time.round(1), truth["time_s"].round(1))]
+    assert both.sum() > 50
+    assert truth["gps_x_m"][both] == pytest.approx(heard[:, 0], abs=0.05)
+    wrong = np.hypot(truth["x_m"] - truth["gps_x_m"], truth["y_m"] - truth["gps_y_m"])
+    assert wrong[0] < 0.3 < wrong.max()

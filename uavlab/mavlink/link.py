@@ -60,7 +60,6 @@ class Link:
             if address.listens:
                 self.socket.bind((address.host, address.port))
             self.socket.setblocking(False)
-            self.record = None if record is None else record.open("wb")
         except OSError as error:
             self.socket.close()
             raise type(error)(
@@ -68,6 +67,11 @@ class Link:
                 f"{error.strerror}: can't listen on {address.host}:{address.port}; another ground station may be "
                 "open there: close it, or choose another port",
             ) from error
+        try:
+            self.record = None if record is None else record.open("wb")
+        except OSError:
+            self.socket.close()
+            raise
         self.peer: tuple[str, int] | None = None if address.listens else (address.host, address.port)
         self.codec = codec(STATION_SYSTEM, STATION_COMPONENT)
         self.vehicle: tuple[int, int] | None = None
@@ -254,19 +258,19 @@ def wait_for_vehicle(link: Link, timeout: float) -> None:
         raise TimeoutError(f"no vehicle was heard: {tried} for {timeout:g} s; {cure}{noise}")
 
 
-def checked_address(address: str, allow_network: bool) -> Address:
+def checked_address(address: str, allow_network: bool, name: str = "address") -> Address:
     """Where to talk; `ValueError` if that isn't on this machine, unless it may be elsewhere."""
-    kind, _, rest = checks.text("address", address).partition(":")
+    kind, _, rest = checks.text(name, address).partition(":")
     host, _, number = rest.rpartition(":")
     known = {"udp": True, "udpin": True, "udpout": False}
     if kind not in known or not host or not number.isdecimal() or not int(number) <= LARGEST:
         raise ValueError(
-            f"address must be as udp:127.0.0.1:14550 (listens) or udpout:127.0.0.1:14550 (calls), got {address!r:.60}; "
+            f"{name} must be as udp:127.0.0.1:14550 (listens) or udpout:127.0.0.1:14550 (calls), got {address!r:.60}; "
             "serial lines and TCP can be forwarded to UDP, as by mavlink-router or MAVProxy"
         )
     if not allow_network and not on_this_machine(host):
         raise ValueError(
-            f"address must be on this machine, as udp:127.0.0.1:14550, got {address!r:.60}: where a real vehicle may "
+            f"{name} must be on this machine, as udp:127.0.0.1:14550, got {address!r:.60}: where a real vehicle may "
             "listen, allow_network=True is needed"
         )
     return Address("127.0.0.1" if host == "localhost" else host, int(number), known[kind])

@@ -225,7 +225,7 @@ class FlightLog:
     Raises
     ------
     ValueError
-        If `mission`, `city` or one of `samples` is of another kind.
+        If `mission`, `city` or one of `samples` is of another kind, or `samples` is no sequence.
 
     See Also
     --------
@@ -254,8 +254,10 @@ class FlightLog:
     def __post_init__(self) -> None:
         checks.instance("mission", self.mission, Mission)
         checks.instance("city", self.city, City)
-        for number, one in enumerate(self.samples):
-            checks.instance(f"samples[{number}]", one, Telemetry)
+        if not isinstance(self.samples, Sequence):  # no generator, which could be gone through once only
+            kind = type(self.samples).__name__
+            raise ValueError(f"samples must be a list of Telemetry, such as list(follow(link)), got {kind}")
+        checks.several("samples", self.samples, Telemetry, least=0)
 
     def __repr__(self) -> str:
         if not len(self.samples):

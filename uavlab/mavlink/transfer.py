@@ -32,7 +32,7 @@ from uavlab.mavlink.dialect import (
     messages,
     name_of,
 )
-from uavlab.mavlink.link import TIMEOUT, Link, connect
+from uavlab.mavlink.link import TIMEOUT, Link, checked_address, connect
 from uavlab.mission import Mission, Preflight
 from uavlab.mission.items import Item
 
@@ -210,7 +210,7 @@ def check_preflight(mission: Mission, vehicle: Link | str, checked: Preflight | 
         if not checked.passed and not despite:
             failed = ", ".join(check.name for check in checked.failed)
             raise ValueError(
-                f"checked failed in {failed}: change the mission, or give despite=True to fly all the same"
+                f"checked: the checklist failed, {failed}: change the mission, or give despite=True to fly all the same"
             )
         return
     here = vehicle.address.host if isinstance(vehicle, Link) else "127."
@@ -233,6 +233,7 @@ def linked(vehicle: Link | str, timeout: float, allow_network: bool) -> Iterator
         return
     if not isinstance(vehicle, str):
         raise ValueError(f"vehicle must be a Link or an address as udp:127.0.0.1:14550, got {type(vehicle).__name__}")
+    checked_address(vehicle, allow_network, "vehicle")
     with connect(vehicle, timeout=timeout, allow_network=allow_network) as link:
         yield link
 

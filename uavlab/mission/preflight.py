@@ -508,7 +508,7 @@ def check_energy(uav: UAV, trials: Sequence[Trial], kept_down: str) -> Check:
     seconds, _ = most_take([trial.seconds for trial in arrived])
     energy, how = most_take([trial.energy / WATT_HOUR for trial in arrived])
     known = "; what the battery holds isn't known" if np.isinf(usable) else ""
-    return Check("energy", energy, usable, "Wh", False, f"in {seconds:.0f} s, {how}{known}")
+    return Check("energy", energy, usable, "Wh", False, f"in {seconds:.0f} s; {how}{known}")
 
 
 def check_arrival(trials: Sequence[Trial], flights: int, kept_down: str) -> Check:
@@ -517,6 +517,6 @@ def check_arrival(trials: Sequence[Trial], flights: int, kept_down: str) -> Chec
         return Check("flights", flights, 0, f"of {flights}", False, f"not flown: {kept_down}")
     failed = [trial.failed for trial in trials if trial.failed]
     share = 100 * share_interval(len(failed), flights)[1]
-    words = f"fail; of all flights like these at most {share:.3g} % do, by the 95 % interval of Clopper and Pearson"
+    words = f"crashed or gave up; of all such flights at most {share:.3g} % do (95 % interval of Clopper and Pearson)"
     words += f"; one {failed[0]}" if failed else ""
     return Check("flights", len(failed), 0, f"of {flights}", False, words)

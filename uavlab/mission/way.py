@@ -298,4 +298,4 @@ def most_take(values: Sequence[float]) -> tuple[float, str]:
         return max(values), f"the most of {count} flights; a bound for 95 % of all needs 59"
     return sorted(values)[
         rank - 1
-    ], f"which 95 % of all flights don't exceed, with 95 % confidence by {count} that arrived"
+    ], f"95 % of all flights need no more; of that we are 95 % sure, by {count} that arrived"

@@ -19,6 +19,8 @@ from uavlab.plot.style import CRASH_COLOR, DPI, ROUTE_COLORS, draw_map, finished
 
 FLOWN, PLANNED, FENCE = ROUTE_COLORS[1], ROUTE_COLORS[2], ROUTE_COLORS[4]
 BREACH = ROUTE_COLORS[0]
+BUILT = "#c7c7c7"
+"""As the map has it."""
 
 
 def ground_station(log: FlightLog) -> Figure:
@@ -57,7 +59,7 @@ def ground_station(log: FlightLog) -> Figure:
     >>> mission = Mission.from_route(route, city, LIGHT_QUADROTOR, home=(4.36, 52.01))
     >>> heard = Telemetry(9.0, 4.36, 52.01, 31.0, 31.0, (5.0, 0.0, 0.0), 97.0, "mission", True, 2)
     >>> [axes.get_ylabel() for axes in plot.ground_station(FlightLog(mission, city, [heard])).axes]
-    ['y, north [m]', 'height above home [m]', 'off the plan [m]', 'over ground [m/s]', 'battery [%]']
+    ['y, north [m]', 'height above home [m]', 'off the plan [m]', 'speed [m/s]', 'battery [%]']
     """
     checks.instance("log", log, FlightLog)
     figure = plt.figure(figsize=(11.0, 6.0), dpi=DPI, layout="constrained")
@@ -70,7 +72,7 @@ def ground_station(log: FlightLog) -> Figure:
     series = (
         ("height above home [m]", position[:, 2] - home[2]),
         ("off the plan [m]", log.deviation),
-        ("over ground [m/s]", speed),
+        ("speed [m/s]", speed),
         ("battery [%]", log.battery),
     )
     for axes, (label, values) in zip(panels, series, strict=True):
@@ -93,8 +95,8 @@ def seen_from_above(axes: Axes, log: FlightLog) -> None:
     draw_map(axes, city, np.where(built_columns(city), 1.0, np.nan), "Greys", vmin=0.0, vmax=3.0)
     draw_planned(axes, mission.path(city))
     parts: list[tuple[str, Any, str, str]] = [
-        (PLANNED, "--", "", "plan"), (FLOWN, "-", "", "track, as GPS has it"), (PLANNED, "", "o", "home"),
-        (PLANNED, "", "^", "end"),
+        (BUILT, "", "s", "building"), (PLANNED, "--", "", "plan"), (FLOWN, "-", "", "track, as GPS has it"),
+        (PLANNED, "", "o", "home"), (PLANNED, "", "^", "end"),
     ]  # fmt: skip
     for polygon in mission.fence:
         x, y = polygon_on(mission.place_on(city), polygon).exterior.xy
@@ -117,4 +119,4 @@ def seen_from_above(axes: Axes, log: FlightLog) -> None:
     axes.margins(0.02)
     axes.autoscale()
     handles = [Line2D([], [], color=c, linestyle=line, marker=m, label=label) for c, line, m, label in parts]
-    axes.legend(handles=handles, loc="upper left", fontsize=8)
+    axes.figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=8)

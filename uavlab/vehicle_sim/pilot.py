@@ -340,8 +340,9 @@ class Pilot:
         x, y, _ = self.body.state.seen_position
         outside = any(shapely.contains_xy(area, x, y) != inside for area, inside in self.areas)
         if outside and not self.breached:
-            self.say("fence breached" + ", going home" * self.fence_returns)
-            if self.fence_returns and self.mode not in (RETURNING, LANDING):
+            returns = self.fence_returns and self.mode not in (RETURNING, LANDING)
+            self.say("fence breached" + ", going home" * returns)
+            if returns:
                 self.go_home()
         self.breached = outside
 

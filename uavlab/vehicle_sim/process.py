@@ -84,6 +84,7 @@ def simulated_vehicle(
     pace: float = 1.0,
     port: int = 0,
     lifetime: float = 3600.0,
+    truth: str | Path | None = None,
 ) -> Iterator[SimulatedVehicle]:
     """A vehicle that speaks MAVLink and flies over a city, in a process of its own, for as long as the block lasts.
 
@@ -114,6 +115,9 @@ def simulated_vehicle(
         To listen on, on this machine only; 0: any that is free.
     lifetime : float
         After so many seconds it ends in any case [s], above 0, at most a day.
+    truth : str or Path, optional
+        Where to write, when the block ends, where it really was in flight: a table of time [s], place, and place as GPS
+        had it [m]. No ground station knows that.
 
     Yields
     ------
@@ -125,7 +129,7 @@ def simulated_vehicle(
     ValueError
         If `city` is no City or has no place on Earth; `uav`, `weather`, `gps` or `link` is of another kind; `at` is not
         two or three finite numbers, or not free; `rng` is no seed; `firmware` is unknown; or `pace`, `port` or
-        `lifetime` is out of its range.
+        `lifetime` is out of its range; or `truth` is not the name of a file.
     RuntimeError
         If it doesn't start; the message has what it said.
 
@@ -159,6 +163,7 @@ def simulated_vehicle(
         "port": checks.whole("port", port, 0, 65535),
         "lifetime": checks.number("lifetime", lifetime, checks.within, 0.1, LONGEST, "s"),
         "at": place.tolist(),
+        "truth": None if truth is None else str(checks.path("truth", truth).resolve()),
     }
     with tempfile.TemporaryDirectory(prefix="uavlab") as folder:
         storage.save(city, Path(folder) / "city.npz")
@@ -252,6 +257,7 @@ def serve(folder: Path) -> None:
         link=DataLink(**parts["link"]),
         pace=read["pace"],
         lifetime=read["lifetime"],
+        truth=None if read["truth"] is None else Path(read["truth"]),
         with_parent=True,
     )
     announce(Server(pilot, FIRMWARES[read["firmware"]], service, radio))

@@ -7,12 +7,15 @@ import select
 import socket
 import threading
 import time
+from collections.abc import Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from uavlab.files import written_whole
 from uavlab.mavlink.link import LARGEST, on_this_machine
-from uavlab.vehicle_sim.body import Body
+from uavlab.vehicle_sim.body import Body, Where
 from uavlab.vehicle_sim.pilot import TICK, Pilot
 from uavlab.vehicle_sim.radio import Channel, DataLink
 from uavlab.vehicle_sim.vehicle import Peer, Vehicle
@@ -40,6 +43,8 @@ class Service(NamedTuple):
     """Seconds of flight in one of the world."""
     lifetime: float = 3600.0
     """After so many seconds it ends in any case."""
+    truth: Path | None = None
+    """Where to write, in the end, where it really was."""
     with_parent: bool = False
     """Whether it ends when its standard input does, as that of a parent that is gone."""
 
@@ -69,6 +74,7 @@ class Server:
         self.vehicle = Vehicle(pilot, autopilot, self.send)
         self.over = threading.Event()
         self.now = time.monotonic()
+        self.track: list[Where] = []
         self.clock = 0.0
         """By which the vehicle flies, and its radio sends [s]."""
 
@@ -96,9 +102,18 @@ class Server:
                 for data, peer in self.up.due(self.clock):
                     self.vehicle.receive(data, peer, self.now)
                 self.vehicle.advance(gone, self.now)
+                self.remember(self.vehicle.pilot.body.where)
                 self.speak()
         finally:
             self.socket.close()
+            if self.service.truth is not None:
+                write_truth(self.service.truth, self.track)
+
+    def remember(self, where: Where) -> None:
+        """Keep where it really is, in flight, if that is to be written."""
+        flies = self.service.truth is not None and self.vehicle.pilot.body.path is not None
+        if flies and (not self.track or where.time > self.track[-1].time):
+            self.track.append(where)
 
     def wait_for_parent(self) -> None:
         while os.read(0, LARGEST):  # not by sys.stdin, whose lock would be held when Python ends
@@ -124,3 +139,11 @@ class Server:
                     self.socket.sendto(data, peer)
                 except OSError:
                     continue  # nobody there any more
+
+
+def write_truth(path: Path, track: Sequence[Where]) -> None:
+    """Where it really was, and where GPS had it, in metres of the map, as a table."""
+    rows = [[one.time, *one.position, *one.seen] for one in track]
+    names = "time_s,x_m,y_m,z_m,gps_x_m,gps_y_m,gps_z_m"
+    with written_whole(path) as part:
+        np.savetxt(part, np.array(rows).reshape(-1, 7), fmt="%.3f", delimiter=",", header=names, comments="")
