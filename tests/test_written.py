@@ -219,7 +219,7 @@ def test_the_guide_names_parameters_that_are_there():
     used = {
         parameter
         for thing in PUBLIC.values()
-        for one in [thing, *(part for part in vars(thing).values() if inspect.isfunction(part))]
+        for one in [thing, *filter(inspect.isfunction, (getattr(m, "__func__", m) for m in vars(thing).values()))]
         if inspect.isfunction(one) or (inspect.isclass(one) and not issubclass(one, Exception))
         for parameter in inspect.signature(one).parameters
     } | {field for thing in PUBLIC.values() for field in dir(thing)}

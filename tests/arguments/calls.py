@@ -7,6 +7,8 @@ function apart. Each entry makes the keyword arguments anew, so that nothing tha
 
 import importlib
 import inspect
+from pathlib import Path
+from unittest import mock
 
 import numpy as np
 from matplotlib import colors
@@ -26,12 +28,15 @@ from things import (
     HOUSE,
     JOINT,
     LINE,
+    LOG,
     MILD,
+    MISSION,
     MODES,
     NORMAL,
     OCCUPIED,
     PLACE,
     PLAN,
+    PREFLIGHT,
     PRICES,
     PROCESS,
     RECORD,
@@ -56,38 +61,52 @@ from things import (
     data,
     geojson_file,
     grid,
+    in_flight,
     model_file,
     monitor,
     out,
+    plan_file,
     predictor,
     road_file,
+    station,
     table,
     terrain_file,
     voxel_file,
+    waypoint_file,
     weather_file,
     zone_file,
 )
 
 from uavlab.city import City, Place
 from uavlab.flight import Autopilot, Gps, Rate
+from uavlab.mavlink import connect, follow, go_home, land, start
+from uavlab.mission import FencePolygon, Item, Mission
 from uavlab.prediction import FEATURES, SETTINGS
 from uavlab.resilience import ADVANCED, BASIC, Controller
+from uavlab.vehicle_sim import DataLink, process, simulated_vehicle
 
 PACKAGES = (
-    "city", "exercises", "flight", "offsets", "optimizers", "planners", "plot", "prediction", "risk", "scene", "spline",
-    "weather",
+    "city", "exercises", "flight", "mavlink", "mission", "offsets", "optimizers", "planners", "plot", "prediction",
+    "risk", "scene", "spline", "vehicle_sim", "weather",
 )  # fmt: skip
 MODULES = ("route", "vehicle", "power", "resilience", "statistics", "sweep")
 
 MADE_BY_THE_LIBRARY = {
     "city.Source", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights", "flight.Rate",
+    "mavlink.CommandDeniedError", "mavlink.Link", "mavlink.MissionRejectedError", "mavlink.Telemetry", "mission.Check",
     "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "power.Power",
     "prediction.Dataset", "resilience.Change", "risk.Fall", "scene.Scene", "spline.Feasibility", "spline.Limit",
-    "vehicle.DataSheet", "weather.DrydenParameters", "weather.ReferenceWind", "weather.WeatherRecord",
+    "vehicle.DataSheet", "vehicle_sim.SimulatedVehicle", "weather.DrydenParameters", "weather.ReferenceWind",
+    "weather.WeatherRecord",
 }  # fmt: skip
 """Results: nobody else makes them, so that their making needs no checks. Their methods do, and who takes them."""
 
 INSIDE = {
+    "mavlink.Link.beat",  # of `Link.receive`
+    "mavlink.Link.note",  # of its record
+    "mavlink.Link.receive",  # a step of `upload`, `follow` and others
+    "mavlink.Link.send",  # the same
+    "mission.Mission.point_of",  # of `Mission.path`, and of the simulated vehicle
     "power.induced_velocity",  # compiled
     "power.rotor_power",  # compiled
     "resilience.ConditionCheck.change",  # one of its own steps
@@ -183,6 +202,21 @@ def site():
 
 def mapped(**more):
     return {"cell": 1.0, "margin": 4.0, "voxels": "touched", "no_fly": [ZONE], **more}
+
+
+def routed(**more):
+    return {
+        "route": LINE, "city": TOWN, "uav": DRONE, "altitudes": "home", "speed": 4.0, "end": "land", "hold": 2.0,
+        "corner_radius": 0.25, "corridor": 0.5, "min_clearance": 0.5, "ceiling": 64.0, "fence_margin": 4.0,
+        "rally": [(3.5, 3.5, 2.5)], **more,
+    }  # fmt: skip
+
+
+def uploaded(**more):
+    return {
+        "mission": MISSION, "vehicle": station(), "checked": PREFLIGHT, "despite": False, "timeout": 2.0,
+        "progress": False, "allow_network": False, **more,
+    }  # fmt: skip
 
 
 CALLS = {
@@ -289,6 +323,57 @@ CALLS = {
     "flight.offset_sigma": lambda: {
         "uav": DRONE, "wind": BREEZE, "ground_velocity": (1.0, 0.0, 0.0), "altitude": 32.0, "controller": ADVANCED,
     },
+    # mavlink
+    "mavlink.FlightLog": lambda: {"mission": MISSION, "city": TOWN, "samples": LOG.samples},
+    "mavlink.FlightLog.to_csv": lambda: {"self": LOG, "path": out("flight.csv")},
+    "mavlink.connect": lambda: {
+        "address": "udp:127.0.0.1:0", "timeout": 0.5, "record": out("flight.tlog"), "allow_network": False,
+        "wait": False,
+    },
+    "mavlink.download": lambda: {"vehicle": station(), "timeout": 2.0, "allow_network": False},
+    "mavlink.download: by an address": lambda: {
+        "vehicle": f"udpout:127.0.0.1:{station().address.port}", "timeout": 2.0, "allow_network": False,
+    },
+    "mavlink.follow": lambda: {"link": station(), "silence": 2.0, "until_landed": False},
+    "mavlink.go_home": lambda: {"link": station()},
+    "mavlink.hold": lambda: {"link": station()},
+    "mavlink.land": lambda: {"link": station()},
+    "mavlink.start": lambda: {"link": station()},
+    "mavlink.upload": uploaded,
+    "mavlink.upload: by an address": lambda: uploaded(vehicle=f"udpout:127.0.0.1:{station().address.port}"),
+    # mission
+    "mission.FencePolygon": lambda: {
+        "corners": ((47.25, 8.5), (47.25, 8.5009765625), (47.2509765625, 8.5)), "inclusion": True, "name": "fence",
+    },
+    "mission.Item": lambda: {
+        "command": 16, "frame": 3, "parameters": (0.0, 2.0, 0.0, 90.0), "latitude": 47.25, "longitude": 8.5,
+        "altitude": 30.0,
+    },
+    "mission.Mission": lambda: {
+        "items": MISSION.items, "home": PLACE, "fence": MISSION.fence, "rally": MISSION.rally, "speed": 4.0,
+        "corner_radius": 0.25, "heights": "above sea", "place": PLACE, "return_height": 8.0, "name": "mission",
+        "notes": ("all is assumed",),
+    },
+    "mission.Mission.from_route": lambda: routed(home=PLACE),
+    "mission.Mission.from_route: by numbers": lambda: routed(
+        home=(8.5 + 21 / 2**20, 47.25 + 4 / 2**18, 400.0), speed=[4.0, 2.0]
+    ),
+    "mission.Mission.home_on": lambda: {"self": MISSION, "city": TOWN},
+    "mission.Mission.path": lambda: {"self": MISSION, "city": TOWN},
+    "mission.Mission.place_on": lambda: {"self": MISSION, "city": TOWN},
+    "mission.Mission.to_geojson": lambda: {"self": MISSION, "path": out("flight.geojson"), "city": TOWN},
+    "mission.Mission.to_gpx": lambda: {"self": MISSION, "path": out("flight.gpx"), "city": TOWN},
+    "mission.Mission.to_kml": lambda: {"self": MISSION, "path": out("flight.kml"), "city": TOWN},
+    "mission.Mission.to_plan": lambda: {"self": MISSION, "path": out("flight.plan")},
+    "mission.Mission.to_wpl": lambda: {"self": MISSION, "path": out("flight.waypoints")},
+    "mission.Preflight": lambda: {"checks": PREFLIGHT.checks, "mission": MISSION},
+    "mission.Preflight.__getitem__": lambda: {"self": PREFLIGHT, "name": "greatest height"},
+    "mission.preflight": lambda: {
+        "mission": MISSION, "city": TOWN, "uav": DRONE, "weather": CALM, "ceiling": 64.0, "min_clearance": 0.25,
+        "fence_margin": 0.5, "flights": 2, "rng": 1, "gps": Gps(),
+    },
+    "mission.read_plan": lambda: {"path": plan_file()},
+    "mission.read_wpl": lambda: {"path": waypoint_file()},
     # offsets
     "offsets.JointOffset": lambda: {"mean": (0.0, 0.5), "sigma": (1.0, 0.5), "correlation": 0.25},
     "offsets.JointOffset.fit": lambda: {"samples": SAMPLES},
@@ -420,6 +505,7 @@ CALLS = {
     },
     "plot.front": lambda: {"routes": [LINE, EXACT], "marked": (LINE,), "label": "risk [1/h]"},
     "plot.ground_risk": lambda: {"risk_map": RISK},
+    "plot.ground_station": lambda: {"log": LOG},
     "plot.in_flight": lambda: {"flights": {"a": FLIGHT}, "limits": {"most": 28.0}},
     "plot.layers": lambda: {"risk_map": RISK},
     "plot.plan": drawn,
@@ -559,6 +645,13 @@ CALLS = {
     "spline.smooth": lambda: {"route": LINE, "city": TOWN, "uav": DRONE, **promised()},
     "spline.subdivided": lambda: {"control": CURVE.control},
     "spline.tilted_thrust": lambda: {"curve": CURVE, "uav": DRONE, "speed": 2.0, "wind": (1.0, 0.0, 0.0)},
+    # vehicle_sim
+    "vehicle_sim.DataLink": lambda: {"bit_rate": 57344.0, "delay": 0.0625, "jitter": 0.03125, "loss": 0.125},
+    "vehicle_sim.simulated_vehicle": lambda: {
+        "city": TOWN, "uav": DRONE, "weather": BREEZE, "at": (1.5, 1.5, 2.5), "rng": 1, "gps": Gps(),
+        "link": DataLink(loss=0.125), "firmware": "px4", "pace": 2.0, "port": 0, "lifetime": 64.0,
+        "truth": out("truth.csv"),
+    },
     # weather
     "weather.Weather": lambda: {
         "temperature_c": 15.0, "humidity_percent": 50.0, "pressure_hpa": 1013.0, "forecast_wind": 3.0,
@@ -671,12 +764,59 @@ CALLS = {
 }  # fmt: skip
 
 
+def connected(**arguments):
+    with connect(**arguments) as link:
+        return repr(link)
+
+
+def said_first(**arguments):
+    """Of a vehicle, whose words differ from time to time."""
+    return type(next(follow(**arguments)))
+
+
+def obeyed(command, *, flies=True):
+    """A command to a vehicle of its own, which none of the others has sent away."""
+
+    def told(link):
+        if link is not station():
+            return command(link)
+        with in_flight(flies) as other:
+            return command(other)
+
+    return told
+
+
+def settled(**arguments):
+    """What the process of a vehicle would be told, without one."""
+    told = []
+
+    def begun(command, **more):
+        told.append((Path(command[-1]) / "settings.json").read_text(encoding="utf-8"))
+
+    with (
+        mock.patch.object(process.subprocess, "Popen", begun),
+        mock.patch.object(process, "port_of", return_value=14580),
+        mock.patch.object(process, "stop"),
+        simulated_vehicle(**arguments),
+    ):
+        return told[0]
+
+
 USES = {
     "city.Place": lambda **fields: City(OCCUPIED, reference=Place(**fields)),
     "flight.Gps": lambda **fields: Autopilot(gps=Gps(**fields)),
+    "mavlink.connect": connected,
+    "mavlink.follow": said_first,
+    "mavlink.go_home": obeyed(go_home),
+    "mavlink.land": obeyed(land),
+    "mavlink.start": obeyed(start, flies=False),
+    "mission.FencePolygon": lambda **fields: Mission(MISSION.items, PLACE, fence=(FencePolygon(**fields),)),
+    "mission.Item": lambda **fields: Mission((Item(**fields),), PLACE),
     "resilience.Controller": lambda **fields: Autopilot(controller=Controller(**fields)),
+    "vehicle_sim.simulated_vehicle": settled,
 }
-"""Named tuples can't look at their fields: who takes them has to."""
+"""Named tuples can't look at their fields: who takes them has to. What talks to a vehicle needs one; what is a context,
+or goes on, does nothing before it is begun."""
 
 
 def public():

@@ -20,7 +20,7 @@ DATE = np.datetime64("2026-01-01")
 
 OURS = {
     "City": things.TOWN, "UAV": things.DRONE, "RiskMap": things.RISK, "Route": things.LINE, "Curve": things.CURVE,
-    "Weather": things.MILD, "Wind": things.BREEZE, "Flight": things.FLIGHT,
+    "Weather": things.MILD, "Wind": things.BREEZE, "Flight": things.FLIGHT, "Mission": things.MISSION,
 }  # fmt: skip
 """Instances that are mistaken for each other."""
 
@@ -84,13 +84,14 @@ ABOVE_ZERO = {
     "acceptance_radius", "wind_scale", "wind_shape", "averaging_time", "width", "air_speed", "altitude", "stiffness",
     "still_offset", "even_odds_energy", "least_fatal_energy", "least", "max_length", "bank", "class_count", "flights",
     "budget", "ants", "swarm", "waypoints", "total", "trials", "per_segment", "dimensions", "max_steps", "until",
-    "probes", "block", "jobs", "train_count", "safety_factor", "gust_factor", "weight", "rate",
+    "probes", "block", "jobs", "train_count", "safety_factor", "gust_factor", "weight", "rate", "bit_rate", "pace",
+    "lifetime", "ceiling",
 }  # fmt: skip
 """Numbers that are never 0, where the documentation doesn't say it."""
 
 MAY_BE_INFINITE = {
     "max_height", "battery", "climb_speed", "sink_speed", "at_most", "upper", "curvature", "clearance", "cost",
-    "max_length", "target", "exact_within", "omega", "x", "gust", "price", "v_max", "max_pheromone",
+    "max_length", "target", "exact_within", "omega", "x", "gust", "price", "v_max", "max_pheromone", "bit_rate",
 }  # fmt: skip
 
 MAY_BE_NAN = {
@@ -129,6 +130,11 @@ RIGHTFUL = {
     "city.City.from_buildings.terrain": {"3"},
     "route.Route.integral.values": {"NaN inside", "None inside", "inf inside"},  # refused only where the route passes
     "statistics.over_maps.values": {"inf inside"},  # runs that failed have infinite gaps; their median is asked for
+    "mission.Item.altitude": {"negative", "zero"},
+    "mission.Item.parameters": {"NaN inside", "None inside"},  # as it is
+    "mission.Mission.from_route.hold": {"zero"},
+    "mission.Mission.heights": {"an unknown one"},
+    "mission.Mission.notes": {"nothing", "twice"},
     "optimizers.bas.start": {"deeper"},  # one point as a row of several
     "optimizers.pso.start": {"deeper"},
     "optimizers.pso_bas.start": {"deeper"},
@@ -597,7 +603,7 @@ def variants_for(spot: Spot) -> Iterator[tuple[str, Any]]:
         yield "str", str(value)
     elif kind == "seed":
         yield "int64", np.int64(value)
-        if spot.function != "risk.random_campus":  # whose name tells the seed
+        if spot.function not in ("risk.random_campus", "vehicle_sim.simulated_vehicle"):  # which tell the seed
             yield "generator", np.random.default_rng(value)
     elif kind in ("array", "occupancy", "indices"):
         yield from array_variants(kind, np.asarray(value))

@@ -2,6 +2,9 @@
 
 import json
 import tempfile
+import threading
+import time
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
@@ -10,7 +13,10 @@ import pandas
 
 from uavlab.city import Building, City, NoFlyZone, Place, Source, Terrain
 from uavlab.city.source import Entry
-from uavlab.flight import Autopilot, Flights, OffsetProcess, fly
+from uavlab.flight import PERFECT_GPS, Autopilot, Flights, OffsetProcess, fly
+from uavlab.mavlink import FlightLog, Telemetry, connect, start, upload
+from uavlab.mavlink.dialect import PX4
+from uavlab.mission import Check, Mission, Preflight
 from uavlab.offsets import JointOffset, OffsetModel, SkewedOffset, safety_domain
 from uavlab.planners import Comparison, ant_colony, astar, flight_conditions
 from uavlab.prediction import FEATURES, OffsetPredictor, make_dataset
@@ -19,6 +25,8 @@ from uavlab.risk import RiskMap
 from uavlab.route import Route
 from uavlab.spline import Curve, feasibility
 from uavlab.vehicle import UAV
+from uavlab.vehicle_sim.pilot import Pilot
+from uavlab.vehicle_sim.server import Server, Service
 from uavlab.weather import Weather, WeatherRecord, Wind
 
 PLACE = Place(8.5, 47.25, 400.0)
@@ -79,6 +87,10 @@ RECORD = WeatherRecord(
     {"temperature_c": np.array([15.0, 16.0]), "wind_speed": np.array([2.0, 3.0])},
     np.array(["2026-01-01T00:00", "2026-01-01T01:00"], dtype="datetime64[s]"), (), (), "record.csv",
 )  # fmt: skip
+MISSION = Mission.from_route(LINE, TOWN, DRONE, corner_radius=0.25, fence_margin=4.0, rally=[(3.5, 3.5, 2.5)])
+PREFLIGHT = Preflight((Check("greatest height", 3.5, 120.0, "m", False, "on the way to item 3"),), MISSION)
+HEARD = Telemetry(9.0, 8.5, 47.25, 402.5, 2.5, (4.0, 3.0, 0.0), 97.0, "mission", True, 2)
+LOG = FlightLog(MISSION, TOWN, (HEARD, HEARD._replace(time=9.5, above_home=2.75)))
 
 FOLDER = tempfile.TemporaryDirectory(prefix="arguments")
 
@@ -196,3 +208,54 @@ def grid():
 
 def ants(risk_map, start, goal, *, budget, rng):
     return ant_colony(risk_map, start, goal, budget=budget, rng=rng, ants=5, max_turn=3.0)
+
+
+def plan_file():
+    path = out("flight.plan")
+    if not path.exists():
+        MISSION.to_plan(path)
+    return path
+
+
+def waypoint_file():
+    path = out("flight.waypoints")
+    if not path.exists():
+        MISSION.to_wpl(path)
+    return path
+
+
+def served():
+    """A vehicle in a thread, ten times as fast as the world, which ends after a minute if nobody ends it."""
+    gps = Autopilot(gps=PERFECT_GPS, heeds_limits=False)
+    pilot = Pilot.standing(TOWN, DRONE, CALM, gps, np.array(START), np.random.default_rng(1))
+    server = Server(pilot, PX4, Service(pace=10.0, lifetime=60.0), np.random.default_rng(2))
+    threading.Thread(target=server.run, daemon=True).start()
+    return server
+
+
+STATIONS = []
+"""When the last vehicle came, and a link to it."""
+
+
+def station():
+    """A link to a vehicle that stands and has a mission; a new one where the last one may soon be gone."""
+    if not STATIONS or time.monotonic() - STATIONS[0] > 20.0:
+        for link in STATIONS[1:]:
+            link.close()
+        STATIONS[:] = time.monotonic(), connect(f"udpout:127.0.0.1:{served().port}")
+        upload(MISSION, STATIONS[1])
+    return STATIONS[1]
+
+
+@contextmanager
+def in_flight(flies=True):
+    """A link to a vehicle that has a mission, and flies it."""
+    server = served()
+    try:
+        with connect(f"udpout:127.0.0.1:{server.port}") as link:
+            upload(MISSION, link)
+            if flies:
+                start(link)
+            yield link
+    finally:
+        server.over.set()

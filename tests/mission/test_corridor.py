@@ -214,6 +214,14 @@ def test_short_legs_are_rounded_less(block):
         assert item.parameters[1] == pytest.approx(leg / 2, abs=1e-3)
 
 
+def test_no_leg_is_too_short_for_a_radius(block):
+    """An autopilot takes 0 for its own."""
+    route = Route([(30, 0, 20), (30, 5, 20), (30.004, 5, 20), (30.004, 5, 25)])
+    mission = Mission.from_route(route, block, RISK_QUADROTOR, corridor=0.001)
+    assert len(placed(mission)) == 4
+    assert [item.parameters[1] for item in placed(mission)[1:]] == [0.01, 0.01, 2.0]
+
+
 def test_the_corner_before_a_climb_home_is_rounded_clear_or_a_stop():
     """Out from under an eave, and up right before it."""
     eave = Building.prism([(20, 0), (60, 0), (60, 40), (20, 40)], 34, bottom=22.0)
@@ -309,10 +317,11 @@ def test_below_a_point_lies_the_roof_and_the_ground():
     assert top in (61.0, 62.0)
 
 
+@pytest.mark.parametrize("high", [3.0, 30.0])
 @pytest.mark.parametrize("where", ["start", "goal"])
-def test_a_narrow_shaft_is_refused(where):
-    walls = [Building.prism([(20, 0), (22, 0), (22, 40), (20, 40)], 30), Building.prism([(22.8, 0), (25, 0), (25, 40),
-             (22.8, 40)], 30)]  # fmt: skip
+def test_a_narrow_shaft_is_refused(where, high):
+    walls = [Building.prism([(20, 0), (22, 0), (22, 40), (20, 40)], high), Building.prism([(22.8, 0), (25, 0), (25, 40),
+             (22.8, 40)], high)]  # fmt: skip
     city = City.from_buildings(walls, cell=0.4, origin=(0, 0, 0), size=(40, 40, 50), reference=(4.36, 52.01))
     points = [(22.4, 20, 40), (5, 20, 40)]
     points = points if where == "start" else points[::-1]

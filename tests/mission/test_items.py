@@ -68,7 +68,7 @@ def test_degrees_are_kept_to_a_centimetre():
             r"items\[0\]: latitude must be from -90 to 90 degrees \(the order is latitude",
         ),
         (Item(16, 3, (0, 0, 0, 0), 0, 541), r"items\[0\]: longitude must be from -540 to 540"),
-        (Item(16, 3, (0, 0, 0, 0), math.nan), r"items\[0\] must be finite"),
+        (Item(16, 3, (0, 0, 0, 0), math.nan), r"items\[0\]: latitude must be from -90"),
         (Item(16, 3, (0, 0, 0, 0), 0, 0, 20_001), r"items\[0\]\.altitude must be from -20000 to 20000 m"),
         (Item(16, 3, (0, 0, 0, 0), 0, 0, math.nan), r"items\[0\]\.altitude must be from"),
     ],

@@ -336,6 +336,7 @@ def test_the_ceiling_holds_between_waypoints_too():
     down = ((25, 150, 170), (75, 150, 170), (125, 150, 115), (175, 150, 115), (225, 150, 170), (275, 150, 170))
     mission = Mission.from_route(Route(down), city, RISK_QUADROTOR, corridor=60.0)  # straight on would be too high
     assert city.height_above_ground(samples(way(mission, city))).max() <= 120.0 + CENTIMETRE
+    refused(r"end='return' flies up to 170\.0 m above the ground", city, down, RISK_QUADROTOR, end="return")
 
 
 def test_ends(towns):

@@ -268,12 +268,12 @@ def test_home_of_an_unknown_height(file):
     assert (mission.home, mission.heights) == (Place(8.545594, 47.3977419, 0.0), "unknown")
 
 
-@pytest.mark.parametrize("frame", [2, 3])
-def test_a_waypoint_without_a_place_is_refused(file, frame):
+@pytest.mark.parametrize(("command", "frame"), [(16, 2), (16, 3), (201, 3)])
+def test_an_item_without_its_place_is_refused(file, command, frame):
     """0° N, 0° E would be one."""
     plan = copy.deepcopy(FOREIGN)
-    plan["mission"]["items"][3] |= {"frame": frame, "params": [0, 0, 0, None, None, None, None]}
-    with pytest.raises(ValueError, match=r"items\[3\] .*(finite|place)"):
+    plan["mission"]["items"][3] |= {"command": command, "frame": frame, "params": [0, 0, 0, None, None, None, None]}
+    with pytest.raises(ValueError, match=r"items\[3\] has no place, or no altitude"):
         read_plan(written(file, plan))
 
 

@@ -11,7 +11,8 @@ from uavlab.flight import GPS
 from uavlab.mission import FencePolygon, Item, Mission
 from uavlab.mission.corridor import cut_off, distance_to_leg
 from uavlab.route import Route
-from uavlab.vehicle_sim.pilot import CRASHED, HOLDING, READY, rounded
+from uavlab.vehicle_sim.pilot import CRASHED, HOLDING, READY
+from uavlab.vehicle_sim.stages import rounded
 from uavlab.weather import Wind
 
 PLACE = Place(8.5, 47.25, 420.0)

@@ -182,7 +182,10 @@ def place_of(name: str, value: Any) -> Place:
     coordinates = checks.numbers(name, value)
     if coordinates.shape not in ((2,), (3,)):
         raise ValueError(f"{name} must be a Place, or (longitude, latitude[, height]), got {value!r:.60}")
-    return Place(*coordinates.tolist())
+    try:
+        return Place(*coordinates.tolist())
+    except ValueError as wrong:
+        raise ValueError(f"{name}: {wrong}") from wrong
 
 
 def place_at_corner(lonlat: np.ndarray, height: float = 0.0) -> Place:

@@ -133,7 +133,7 @@ def checked_item(name: str, item: Any) -> Item:
     command = checks.whole(f"{name}.command", item.command, 0, 65535)
     frame = checks.whole(f"{name}.frame", item.frame, 0, 255)
     first, second, third, fourth = checked_parameters(name, item)
-    latitude, longitude = checked_corner(f"{name}", (item.latitude, item.longitude))
+    latitude, longitude = checked_degrees(name, item.latitude, item.longitude)
     altitude = checks.number(f"{name}.altitude", item.altitude, checks.within, -HIGHEST, HIGHEST, "m")
     parameters = tuple(kept(value) for value in (first, second, third, fourth))
     return Item(command, frame, parameters, latitude, longitude, kept(altitude))  # type: ignore[arg-type]
@@ -161,10 +161,15 @@ def checked_polygon(name: str, polygon: Any) -> FencePolygon:
 
 def checked_corner(name: str, corner: Any) -> tuple[float, float]:
     """Latitude and longitude [degrees] as they travel."""
-    latitude, longitude = checks.array(name, corner, 2).tolist()
-    checks.within(f"{name}: latitude", latitude, -90.0, 90.0, "degrees (the order is latitude, longitude)")
-    checks.within(f"{name}: longitude", longitude, -540.0, 540.0, "degrees")
-    return on_wire(latitude), longitude_on_wire(longitude)
+    return checked_degrees(name, *checks.array(name, corner, 2).tolist())
+
+
+def checked_degrees(name: str, latitude: float, longitude: float) -> tuple[float, float]:
+    """The same of two numbers."""
+    order = "degrees (the order is latitude, longitude)"
+    north = checks.number(f"{name}: latitude", latitude, checks.within, -90.0, 90.0, order)
+    east = checks.number(f"{name}: longitude", longitude, checks.within, -540.0, 540.0, "degrees")
+    return on_wire(north), longitude_on_wire(east)
 
 
 def has_place(item: Item) -> bool:

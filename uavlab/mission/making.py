@@ -275,7 +275,7 @@ def check_return(legs: Corridor, site: Site, points: np.ndarray, return_height: 
     above = extremes(above_ground(city, way[1], way[2])[1]).max()
     if above > legs.ceiling + 1e-6:
         raise ValueError(
-            f"end='return' climbs to {above:.1f} m above the ground, over all that stands between the way and home, "
+            f"end='return' flies up to {above:.1f} m above the ground, over all that stands between the way and home, "
             f"and the ceiling is {legs.ceiling:g} m: use {cure}, or ask for another ceiling, if it is lawful there"
         )
     zone = zone_on_way(city, way)

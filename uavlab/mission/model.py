@@ -304,6 +304,7 @@ class Mission:
 
     def place_on(self, city: City) -> Place:
         """Where on Earth x = y = 0 of the map is, by the city, or by the mission where it doesn't know."""
+        checks.instance("city", city, City)
         return self.place if city.reference is None and self.place is not None else city.checked_reference()
 
     def home_on(self, city: City) -> np.ndarray:

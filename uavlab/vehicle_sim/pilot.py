@@ -8,7 +8,6 @@ left in the battery, it goes home.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -16,7 +15,7 @@ import shapely
 from uavlab.city import City
 from uavlab.flight.autopilot import Autopilot
 from uavlab.flight.state import BATTERY_EMPTY, FLYING
-from uavlab.mission.corridor import corner, floor_below
+from uavlab.mission.corridor import floor_below
 from uavlab.mission.fences import polygon_on
 from uavlab.mission.items import (
     CHANGE_SPEED,
@@ -34,6 +33,7 @@ from uavlab.mission.model import Mission
 from uavlab.mission.way import CLIMB, LAST_METRES, SINK, TOUCH_DOWN
 from uavlab.vehicle import UAV
 from uavlab.vehicle_sim.body import OVER, Body
+from uavlab.vehicle_sim.stages import BETWEEN, Passed, Stage, rounded
 from uavlab.weather import Wind
 
 READY, TAKING_OFF, FLYING_MISSION, HOLDING, RETURNING, LANDING, CRASHED = (
@@ -53,32 +53,6 @@ CONTACT = 0.1
 
 ARRIVED = 1.5
 """Who waits at a point is that near to it, as GPS has it [m]."""
-
-CORNER_POINTS = 6
-USUAL_RADIUS = 2.0
-"""Of acceptance, where an item has none [m]."""
-
-
-class Stage(NamedTuple):
-    """What is flown without a stop."""
-
-    points: np.ndarray
-    """(N, 3) [m]"""
-    speeds: np.ndarray
-    """On the way to each of them [m/s]."""
-    reached: tuple[tuple[float, int], ...]
-    """How far along the path each item is reached [m], and its number."""
-    hold: float
-    """At its end [s]; infinite to stay."""
-    low: bool
-    """Whether it takes off or lands, and may touch the ground."""
-
-
-BETWEEN = -1
-"""Number of what is passed between items."""
-
-Passed = tuple[int, np.ndarray, float, Item]
-"""Number of an item, its point (3,) [m], speed on the way there [m/s], and the item."""
 
 
 @dataclass
@@ -355,23 +329,3 @@ class Pilot:
 
     def say(self, words: str) -> None:
         self.words.append(words)
-
-
-def rounded(begin: np.ndarray, legs: list[Passed], hold: float) -> Stage:
-    """Waypoints with their corners rounded, but for the last one, where it stops."""
-    places = np.vstack([begin, *[point for _, point, _, _ in legs]])
-    points, speeds, marks = [], [], []
-    for at, (number, here, speed, item) in enumerate(legs, 1):
-        lengths = [float(np.linalg.norm(places[n + 1] - places[n])) for n in range(at - 1, min(at + 1, len(legs)))]
-        if at == len(legs) or number == BETWEEN or min(lengths) < CONTACT:
-            arc = here[None]
-        else:
-            into, out, reach = corner(places[at - 1], here, places[at + 1], item.parameters[1] or USUAL_RADIUS)
-            share = np.linspace(0.0, 1.0, CORNER_POINTS)[:, None]
-            arc = here - (1 - share) ** 2 * reach * into + share**2 * reach * out
-        points.append(arc)
-        speeds.append(np.full(len(arc), speed))
-        if number != BETWEEN:
-            done = np.vstack([begin, *points[:-1], arc[: len(arc) // 2 + 1]])
-            marks.append((float(np.linalg.norm(np.diff(done, axis=0), axis=1).sum()), number))
-    return Stage(np.vstack(points), np.concatenate(speeds), tuple(marks), hold, False)
