@@ -70,6 +70,12 @@ def test_a_port_that_is_taken_is_said():
         connect(f"udp:127.0.0.1:{first.port}", timeout=0.2)
 
 
+def test_a_record_that_cant_be_written_is_said(tmp_path):
+    """And not that the port is taken."""
+    with pytest.raises(FileNotFoundError, match=r"No such file or directory: '.*none.flight\.tlog'"):
+        connect(HERE, record=tmp_path / "none" / "flight.tlog", wait=False)
+
+
 def test_a_failed_connection_frees_its_port():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))

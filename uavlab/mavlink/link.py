@@ -206,7 +206,7 @@ def connect(
         If `address` is none of these, or not on this machine and `allow_network` is not True; `timeout` is not above 0;
         `record` is not the name of a file; or `allow_network` or `wait` is neither True nor False.
     OSError
-        If the port is taken, as by another ground station.
+        If the port is taken, as by another ground station, or `record` can't be written.
     TimeoutError
         If no vehicle is heard.
 
