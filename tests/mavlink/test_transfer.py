@@ -8,7 +8,7 @@ import pytest
 
 from uavlab.city import Place
 from uavlab.mavlink import CommandDeniedError, MissionRejectedError, connect, download, start, upload
-from uavlab.mission import FencePolygon, Item, Mission
+from uavlab.mission import Check, FencePolygon, Item, Mission, Preflight
 from uavlab.vehicle_sim import P840, DataLink
 
 FIELDS = ("items", "fence", "rally")
@@ -173,6 +173,22 @@ def test_a_vehicle_without_the_parameter_is_warned_of(meadow, square, served):
         server.vehicle.parameters = {"OTHER": 1.0, "THING": 2.0}
         with pytest.warns(UserWarning, match="didn't take RTL_RETURN_ALT"):
             upload(square, address(server))
+
+
+def test_a_checklist_that_failed_stops_the_upload(meadow, square, served):
+    passed = Preflight((Check("height", 30.0, 120.0, "m", False, ""),), square)
+    failed = Preflight(
+        (Check("height", 130.0, 120.0, "m", False, ""), Check("wind", 9.0, 8.0, "m/s", False, "")), square
+    )
+    with served(meadow, (0, 0, 5)) as server, connect(address(server)) as link:
+        with pytest.raises(ValueError, match="checked: the checklist failed, height, wind"):
+            upload(square, link, failed)
+        assert server.vehicle.pilot.items == ()
+        with pytest.raises(ValueError, match="checked must be the preflight of this mission"):
+            upload(replace(square, name="another"), link, passed)
+        assert server.vehicle.pilot.items == ()
+        assert same(upload(square, link, passed), square)
+        assert same(upload(square, link, failed, despite=True), square)
 
 
 def test_wrong_arguments_are_named(square):

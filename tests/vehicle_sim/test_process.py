@@ -182,7 +182,7 @@ def test_from_a_shell_it_calls_a_ground_station():
             "--station", f"127.0.0.1:{link.port}", "--port", "0", "--pace", "2", "--city", "table1", "--at", "5,5"
         )
         try:
-            deadline = time.monotonic() + 60
+            deadline = time.monotonic() + 180
             while link.vehicle is None and time.monotonic() < deadline:
                 link.receive("HEARTBEAT", timeout=1.0)
             assert link.vehicle == (1, 1)

@@ -31,7 +31,7 @@ from uavlab.weather.wind import wind_of
 
 FIRMWARES = {"px4": PX4, "ardupilot": ARDUPILOT}
 
-STARTING, STOPPING = 60.0, 5.0
+STARTING, STOPPING = 180.0, 5.0
 """How long its start may take, with a compiler on the way, and its end [s]."""
 
 FASTEST = 100.0
