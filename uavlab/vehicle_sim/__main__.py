@@ -7,6 +7,7 @@ answers whoever calls. Ctrl-C ends it.
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -25,6 +26,7 @@ LINKS = {"perfect": PERFECT_LINK, "p840": P840}
 def main(arguments: list[str] | None = None) -> int:
     """Be a vehicle; 0 when it is stopped, 2 for a wrong question."""
     options = parser().parse_args(arguments)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # which shells switch off for what runs in the background
     try:
         if options.settings is not None:
             serve(options.settings)
