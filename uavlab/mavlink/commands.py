@@ -181,14 +181,12 @@ def land(link: Link) -> None:
 
 def command(link: Link, number: int, *parameters: float) -> None:
     """Send a command until it is answered; the vehicle's own words say why it is denied."""
-    checks.instance("link", link, Link)
-    if link.closed or link.vehicle is None:
-        raise ValueError("link must be one on which a vehicle was heard: connect without wait=False")
+    target = target_of(link)
     said, patience, attempt = [], link.patience, 0
     values = [*parameters, *[0.0] * (7 - len(parameters))]
     end, patience.times = time.monotonic() + TIMEOUT, 0
     while time.monotonic() < end:
-        link.send(messages().MAVLink_command_long_message(*target_of(link), number, attempt, *values))
+        link.send(messages().MAVLink_command_long_message(*target, number, attempt, *values))
         patience.asked(time.monotonic())
         attempt = min(attempt + 1, 255)
         while (rest := patience.asked_at + patience.seconds - time.monotonic()) > 0:

@@ -21,6 +21,16 @@ CANCELLED = 15
 ARDUPILOT, PX4 = 3, 12
 """MAV_AUTOPILOT."""
 
+RETURN_HEIGHTS = {ARDUPILOT: ("RTL_ALT", 100.0), PX4: ("RTL_RETURN_ALT", 1.0)}
+"""What autopilots call the height at which they return, and in which parts of a metre."""
+
+ARMED, EMERGENCY, ON_GROUND = 128, 6, 1
+"""Bit of a mode (MAV_MODE_FLAG); a state (MAV_STATE), with motors that stand a crash; MAV_LANDED_STATE."""
+
+PX4_MODES = {2: "take off", 3: "hold", 4: "mission", 5: "return", 6: "land"}
+ARDUPILOT_MODES = {3: "mission", 5: "hold", 6: "return", 9: "land"}
+"""What autopilots do on their own, by their numbers for it; of PX4 those below its main mode of that."""
+
 ARM, START_MISSION, SET_MODE, GO_HOME, LAND_HERE, REQUEST_MESSAGE = 400, 300, 176, 20, 21, 512
 """Commands that are sent alone (MAV_CMD)."""
 
@@ -46,6 +56,11 @@ def packed(codec: Any, message: Any) -> bytes:
     data = message.pack(codec)
     codec.seq = (codec.seq + 1) % 256
     return data
+
+
+def sender_of(message: Any) -> tuple[int, int]:
+    """System and component that a message is from."""
+    return message.get_srcSystem(), message.get_srcComponent()
 
 
 def name_of(enumeration: str, value: int) -> str:

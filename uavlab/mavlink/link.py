@@ -16,7 +16,7 @@ from types import TracebackType
 from typing import Any, NamedTuple, Self
 
 from uavlab import checks
-from uavlab.mavlink.dialect import codec, messages, packed
+from uavlab.mavlink.dialect import codec, messages, packed, sender_of
 from uavlab.mavlink.patience import Patience
 
 STATION_SYSTEM, STATION_COMPONENT = 255, 190
@@ -151,7 +151,7 @@ class Link:
             if message.get_type() == "BAD_DATA":
                 self.corrupted += 1
                 continue
-            who = message.get_srcSystem(), message.get_srcComponent()
+            who = sender_of(message)
             if self.vehicle is None and message.get_type() == "HEARTBEAT" and message.autopilot != 8:  # a vehicle's own
                 self.peer, self.vehicle, self.autopilot = sender, who, message.autopilot
             if who == self.vehicle:

@@ -17,27 +17,15 @@ from uavlab.city import City
 from uavlab.files import written_whole
 from uavlab.flight import Flight
 from uavlab.flight.state import COLUMNS
-from uavlab.mavlink.dialect import ARDUPILOT
+from uavlab.mavlink.dialect import ARDUPILOT, ARDUPILOT_MODES, ARMED, EMERGENCY, ON_GROUND, PX4_MODES
 from uavlab.mavlink.link import Link
 from uavlab.mavlink.transfer import lost, target_of
 from uavlab.mission import Mission
+from uavlab.mission.corridor import nearest_on_leg
 from uavlab.route import Route
 
 SILENCE = 5.0
 """After which a link is taken for lost [s]."""
-
-ARMED = 128
-"""Bit of a mode (MAV_MODE_FLAG_SAFETY_ARMED)."""
-
-EMERGENCY = 6
-"""Of a heartbeat (MAV_STATE): with motors that stand, a crash."""
-
-ON_GROUND = 1
-"""MAV_LANDED_STATE."""
-
-PX4_MODES = {2: "take off", 3: "hold", 4: "mission", 5: "return", 6: "land"}
-ARDUPILOT_MODES = {3: "mission", 5: "hold", 6: "return", 9: "land"}
-"""Names of what autopilots do on their own, as `uavlab.vehicle_sim` has them."""
 
 
 class Telemetry(NamedTuple):
@@ -140,15 +128,12 @@ def follow(link: Link, *, silence: float = SILENCE, until_landed: bool = True) -
         ...
     ValueError: link must be one on which a vehicle was heard: connect without wait=False
     """
-    checks.instance("link", link, Link)
-    if link.closed or link.vehicle is None:
-        raise ValueError("link must be one on which a vehicle was heard: connect without wait=False")
+    target_of(link)
     silence = checks.positive_number("silence", silence)
     return followed(link, silence, checks.flag("until_landed", until_landed))
 
 
 def followed(link: Link, silence: float, until_landed: bool) -> Iterator[Telemetry]:
-    target_of(link)
     state = {"battery": np.nan, "mode": "ready", "armed": False, "current": -1, "breached": False, "flown": False}
     reached: list[int] = []
     said: list[str] = []
@@ -401,9 +386,7 @@ def nearest_on(way: np.ndarray, points: np.ndarray) -> np.ndarray:
     """The points of a polyline (N, 3) that are nearest to points (T, 3)."""
     best, found = np.full(len(points), np.inf), np.empty((len(points), 3))
     for start, end in pairwise(way):
-        leg = end - start
-        share = np.clip((points - start) @ leg / max(float(leg @ leg), 1e-30), 0.0, 1.0)
-        there = start + share[:, None] * leg
+        there = nearest_on_leg(points, start, end)
         apart = np.linalg.norm(points - there, axis=1)
         nearer = apart < best
         best[nearer], found[nearer] = apart[nearer], there[nearer]

@@ -27,12 +27,14 @@ from uavlab.mavlink.dialect import (
     HOME_POSITION,
     MISSION,
     PLANS,
+    PX4,
     RALLY_POINTS,
     REQUEST_MESSAGE,
+    RETURN_HEIGHTS,
     messages,
     name_of,
 )
-from uavlab.mavlink.link import TIMEOUT, Link, checked_address, connect
+from uavlab.mavlink.link import TIMEOUT, Link, checked_address, connect, on_this_machine
 from uavlab.mission import Mission, Preflight
 from uavlab.mission.items import Item
 
@@ -41,10 +43,6 @@ AGAIN = 0.25
 
 TRIES = 12
 """So many times in all; on a link that loses a tenth each way, one in 500 million goes unanswered."""
-
-RETURN_PARAMETERS = {ARDUPILOT: ("RTL_ALT", 100.0)}
-PX4_RETURN = ("RTL_RETURN_ALT", 1.0)
-"""What autopilots call the height at which they return, and in which parts of a metre."""
 
 SINGLE = 9
 """MAV_PARAM_TYPE of 32 bits with a point."""
@@ -213,10 +211,13 @@ def check_preflight(mission: Mission, vehicle: Link | str, checked: Preflight | 
                 f"checked: the checklist failed, {failed}: change the mission, or give despite=True to fly all the same"
             )
         return
-    here = vehicle.address.host if isinstance(vehicle, Link) else "127."
-    if isinstance(vehicle, str):
-        here = vehicle.partition(":")[2]
-    if not (here.startswith(("127.", "localhost")) or despite):
+    if isinstance(vehicle, Link):
+        host = vehicle.address.host
+    elif isinstance(vehicle, str):
+        host = checked_address(vehicle, True, "vehicle").host
+    else:
+        return  # which is refused where it is opened
+    if not (on_this_machine(host) or despite):
         raise ValueError(
             "checked must be given for a vehicle that isn't on this machine: run uavlab.mission.preflight, or give "
             "despite=True"
@@ -229,6 +230,7 @@ def linked(vehicle: Link | str, timeout: float, allow_network: bool) -> Iterator
     if isinstance(vehicle, Link):
         if vehicle.closed:
             raise ValueError(f"vehicle must be an open link, got {vehicle!r}")
+        target_of(vehicle, "vehicle")
         yield vehicle
         return
     if not isinstance(vehicle, str):
@@ -326,7 +328,7 @@ def asked_for(link: Link, request: Any, kind: str, fits: Any, timeout: float) ->
 
 def set_return_height(link: Link, height: float) -> None:
     """Tell the vehicle how high to return; a warning where it doesn't know the parameter."""
-    name, parts = RETURN_PARAMETERS.get(link.autopilot, PX4_RETURN)
+    name, parts = RETURN_HEIGHTS.get(link.autopilot, RETURN_HEIGHTS[PX4])
     wanted = round(height * parts, 1)
     request = messages().MAVLink_param_set_message(*target_of(link), name.encode(), wanted, SINGLE)
     try:
@@ -362,10 +364,11 @@ def mission_of(found: dict[int, list[Item]], autopilot: int, home: Place, like: 
     return Mission(tuple(items), home, polygons_of(found[FENCE]), rally_of(found[RALLY_POINTS]), **kept)
 
 
-def target_of(link: Link) -> tuple[int, int]:
-    """Whom messages are for."""
-    if link.vehicle is None:
-        raise ValueError("vehicle must be a link on which a vehicle was heard: connect without wait=False")
+def target_of(link: Link, name: str = "link") -> tuple[int, int]:
+    """Whom messages are for; `name` is what the argument is called."""
+    checks.instance(name, link, Link)
+    if link.closed or link.vehicle is None:
+        raise ValueError(f"{name} must be one on which a vehicle was heard: connect without wait=False")
     return link.vehicle
 
 

@@ -142,11 +142,19 @@ def cut_off(into: np.ndarray, out: np.ndarray, reach: float) -> float:
 
 def distance_to_leg(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Distance of points (N, 3) from a straight leg [m]."""
-    if len(points) == 0:
-        return np.zeros(0)
+    share = share_of_leg(points, start, end)
+    return np.linalg.norm(points - start - share[:, None] * (end - start), axis=1)
+
+
+def nearest_on_leg(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """The points of a straight leg that are nearest to points (N, 3), (N, 3) [m]."""
+    return start + share_of_leg(points, start, end)[:, None] * (end - start)
+
+
+def share_of_leg(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Where on a straight leg the nearest points lie, from 0 at its start to 1 at its end, (N,)."""
     leg = end - start
-    share = np.clip((points - start) @ leg / max(float(leg @ leg), 1e-30), 0.0, 1.0)
-    return np.linalg.norm(points - start - share[:, None] * leg, axis=1)
+    return np.clip((points - start) @ leg / max(float(leg @ leg), 1e-30), 0.0, 1.0)
 
 
 def above_ground(city: City, start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -195,13 +203,18 @@ def floor_below(city: City, point: np.ndarray) -> tuple[float, float]:
     return float(city.surface_below[i, j, k]), top
 
 
+def touchable(city: City, point: np.ndarray, diameter: float) -> float:
+    """Up to which height a UAV that starts or lands below a point may touch what it stands on: its own, a voxel's."""
+    return floor_below(city, point)[1] + max(diameter, city.cell)
+
+
 def check_column(city: City, name: str, point: np.ndarray, diameter: float) -> float:
     """Height z of what lies below a point, from where a UAV can rise to it without touching a wall [m].
 
-    Near the ground, within its own height or a voxel's, it may touch what it stands on.
+    Where it is `touchable`, it may touch what it stands on.
     """
-    surface, top = floor_below(city, point)
-    low = np.array([*point[:2], top + max(diameter, city.cell)])
+    surface, _ = floor_below(city, point)
+    low = np.array([*point[:2], touchable(city, point, diameter)])
     if low[2] < point[2]:
         apart = float(city.segment_distance(low, point))
         if apart < (1 - CONTACT) * diameter / 2:

@@ -33,6 +33,9 @@ SEA, NO_FRAME, HOME, TERRAIN = 0, 2, 3, 10
 FRAMES = {"sea": SEA, "home": HOME, "terrain": TERRAIN}
 """By what altitudes are measured from."""
 
+ABOVE = {frame: word for word, frame in FRAMES.items()}
+"""The other way round."""
+
 DEGREES, THOUSANDTHS = 7, 3
 """Digits that are kept."""
 
@@ -88,7 +91,7 @@ class Item(NamedTuple):
             return f"<Item: {name} to {self.parameters[1]:g} m/s>"
         if self.command not in PLACED:
             return f"<Item: {name}>"
-        above = {frame: word for word, frame in FRAMES.items()}.get(self.frame, f"frame {self.frame}")
+        above = ABOVE.get(self.frame, f"frame {self.frame}")
         held = f", hold {self.parameters[0]:g} s" if self.command == WAYPOINT and self.parameters[0] else ""
         place = f"{self.latitude:.7f}°, {self.longitude:.7f}°, {self.altitude:.1f} m above {above}"
         return f"<Item: {name} at {place}{held}>"

@@ -14,7 +14,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.place import ABOVE_SEA
 from uavlab.files import written_whole
-from uavlab.mission.items import COMMANDS, FRAMES, Item, has_place, longitude_on_wire, on_wire
+from uavlab.mission.items import ABOVE, COMMANDS, Item, has_place, longitude_on_wire, on_wire
 
 if TYPE_CHECKING:
     from uavlab.mission.model import Mission
@@ -93,9 +93,8 @@ def write_geojson(mission: Mission, path: str | Path, city: City) -> None:
 
 def properties(number: int, item: Item) -> dict[str, Any]:
     """What GeoJSON says of an item."""
-    above = {frame: word for word, frame in FRAMES.items()}
     name = COMMANDS.get(item.command, f"command {item.command}")
-    return {"item": number, "name": name, "altitude": item.altitude, "above": above.get(item.frame, str(item.frame))}
+    return {"item": number, "name": name, "altitude": item.altitude, "above": ABOVE.get(item.frame, str(item.frame))}
 
 
 def feature(kind: str, where: Any, **named: Any) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from uavlab.mission import maps, plan_file, waypoint_file
 from uavlab.mission.corridor import STOP, Corridor, floor_below, reaches
 from uavlab.mission.fences import exclusions, inclusion
 from uavlab.mission.items import (
+    ABOVE,
     FRAMES,
     HIGHEST,
     HOME,
@@ -165,8 +166,7 @@ class Mission:
     @property
     def altitudes(self) -> str:
         """What the altitudes of its items are measured from: "home", "sea" or "terrain"; all, if they differ."""
-        words = {frame: word for word, frame in FRAMES.items()}
-        found = dict.fromkeys(words[item.frame] for item in self.items if item.frame in words)
+        found = dict.fromkeys(ABOVE[item.frame] for item in self.items if item.frame in ABOVE)
         return " and ".join(found) or "nothing"
 
     @classmethod

@@ -18,7 +18,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.flight.autopilot import GPS, Gps
 from uavlab.flight.simulation import MOST_FLIGHTS
-from uavlab.mission.corridor import above_ground, extremes, floor_below, zone_on_way
+from uavlab.mission.corridor import above_ground, extremes, floor_below, touchable, zone_on_way
 from uavlab.mission.fences import polygon_on
 from uavlab.mission.making import Site, height_to_return
 from uavlab.mission.model import CEILING, Mission
@@ -350,7 +350,7 @@ def check_landing(way: MissionWay, uav: UAV) -> list[Check]:
 
 def room_in_column(way: MissionWay, point: np.ndarray, uav: UAV) -> float:
     """Least distance to obstacles between a point and what lies below it, but for the last bit [m]."""
-    low = np.array([*point[:2], min(way.touchable(point, uav), point[2])])
+    low = np.array([*point[:2], min(touchable(way.city, point, uav.diameter), point[2])])
     return float(way.city.segment_distance(low, point))
 
 

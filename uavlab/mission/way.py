@@ -17,7 +17,7 @@ from uavlab.city import City
 from uavlab.flight.autopilot import Autopilot, Gps
 from uavlab.flight.results import Flight
 from uavlab.flight.simulation import TIME_STEP, Setup, flown, setup_of
-from uavlab.mission.corridor import above_ground, corner, cut_off, floor_below
+from uavlab.mission.corridor import above_ground, corner, cut_off, floor_below, touchable
 from uavlab.mission.items import CHANGE_SPEED, LAND, LOITER, PLACED, RETURN, TAKEOFF, TERRAIN, WAYPOINT, Item, has_place
 from uavlab.mission.model import Mission
 from uavlab.power import power_needed
@@ -101,10 +101,6 @@ class MissionWay(NamedTuple):
         floor = np.array([*self.end[:2], min(floor_below(self.city, self.end)[0], self.end[2])])
         down = Leg(self.end, floor, 0.0, self.stops[-1]._replace(speed=SINK))
         return [Leg(self.stops[0].point, self.begin, 0.0, self.stops[1])] + [down] * self.lands
-
-    def touchable(self, point: np.ndarray, uav: UAV) -> float:
-        """Up to which height a UAV that takes off or lands may touch what it stands on [m]."""
-        return floor_below(self.city, point)[1] + max(uav.diameter, self.city.cell)
 
 
 def way_of(mission: Mission, city: City) -> MissionWay:
@@ -241,7 +237,7 @@ class Trial(NamedTuple):
 
 def ready(way: MissionWay, uav: UAV, wind: Wind, gps: Gps) -> Setup:
     """What is simulated: the way from just above the ground to the ground, each leg at its speed, no battery."""
-    low = np.array([*way.begin[:2], min(way.touchable(way.begin, uav), way.begin[2])])
+    low = np.array([*way.begin[:2], min(touchable(way.city, way.begin, uav.diameter), way.begin[2])])
     points, speeds = [low, way.begin, *(leg.end for leg in way.legs)], [CLIMB, *(leg.stop.speed for leg in way.legs)]
     if way.lands:
         floor = way.columns[1].end
@@ -285,7 +281,7 @@ def touched_down(flight: Flight, way: MissionWay, uav: UAV) -> bool:
     """Whether a flight that crashed has landed: on its last leg, touching what lies below it."""
     place, target = flight.position[-1], flight.reference[-1]
     landing = way.lands and np.hypot(*(target - way.end)[:2]) <= ROUNDED and target[2] < way.end[2]
-    return flight.outcome == "crashed" and bool(landing) and bool(place[2] < way.touchable(place, uav))
+    return flight.outcome == "crashed" and bool(landing) and bool(place[2] < touchable(way.city, place, uav.diameter))
 
 
 def most_take(values: Sequence[float]) -> tuple[float, str]:

@@ -28,7 +28,7 @@ from uavlab.flight.state import (
     Obstacles,
     State,
 )
-from uavlab.mission.corridor import floor_below
+from uavlab.mission.corridor import floor_below, touchable
 from uavlab.route import Route
 from uavlab.spline.curve import CONTACT
 from uavlab.vehicle import UAV
@@ -136,7 +136,8 @@ class Body:
         assert self.path is not None
         assert self.model is not None
         space = self.obstacles
-        if low and self.state.position[2] < self.touchable(self.state.position):
+        position = self.state.position
+        if low and position[2] < touchable(self.city, position, self.uav.diameter):
             space = space._replace(touching=0.0)
         before = float(self.state.sums[LEAST])
         self.state.counts[1] = 0
@@ -146,10 +147,6 @@ class Body:
             self.state.sums[LEAST] = before
         self.time += steps * TIME_STEP
         return FLYING if outcome == ARRIVED else outcome
-
-    def touchable(self, point: np.ndarray) -> float:
-        """Up to which height it may touch what it lands on [m]."""
-        return floor_below(self.city, point)[1] + max(self.uav.diameter, self.city.cell)
 
     def height(self) -> float:
         """Above what lies below it [m]."""

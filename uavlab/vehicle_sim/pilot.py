@@ -36,8 +36,8 @@ from uavlab.vehicle_sim.body import OVER, Body
 from uavlab.vehicle_sim.stages import BETWEEN, Passed, Stage, rounded
 from uavlab.weather import Wind
 
-READY, TAKING_OFF, FLYING_MISSION, HOLDING, RETURNING, LANDING, CRASHED = (
-    "ready", "take off", "mission", "hold", "return", "land", "crashed",
+READY, FLYING_MISSION, HOLDING, RETURNING, LANDING, CRASHED = (
+    "ready", "mission", "hold", "return", "land", "crashed",
 )  # fmt: skip
 
 NOT_FLYING = "it isn't flying"
@@ -269,7 +269,7 @@ class Pilot:
         if outcome != FLYING:
             self.crash(OVER[outcome])
             return
-        if stage is not None and stage.low and self.mode != TAKING_OFF and self.landed(stage):
+        if stage is not None and stage.low and self.landed(stage):
             return
         self.look_at_fence()
         self.go_on()

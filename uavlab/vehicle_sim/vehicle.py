@@ -27,11 +27,13 @@ from uavlab.mavlink.dialect import (
     PX4,
     RALLY_POINTS,
     REQUEST_MESSAGE,
+    RETURN_HEIGHTS,
     SET_MODE,
     START_MISSION,
     codec,
     messages,
     packed,
+    sender_of,
 )
 from uavlab.mavlink.patience import Patience
 from uavlab.mission.items import (
@@ -40,11 +42,10 @@ from uavlab.mission.items import (
     Item,
 )
 from uavlab.vehicle_sim.judging import DENIED, INVALID, INVALID_SEQUENCE, NO_SPACE, UNSUPPORTED, judged
-from uavlab.vehicle_sim.pilot import CRASHED, FLYING_MISSION, HOLDING, LANDING, READY, RETURNING, TICK, Pilot
+from uavlab.vehicle_sim.pilot import FLYING_MISSION, HOLDING, LANDING, RETURNING, TICK, Pilot
 from uavlab.vehicle_sim.words import (
-    ARDUPILOT_MODES,
+    MODES,
     PX4_AUTO,
-    PX4_SUBMODES,
     VERSION,
     home_of,
     position_of,
@@ -64,8 +65,9 @@ GIVE_UP = 3.0
 COMMAND_UNKNOWN, TEMPORARILY_REJECTED = 3, 1
 """Of commands (MAV_RESULT)."""
 
+FENCE_ACTIONS = {ARDUPILOT: "FENCE_ACTION", PX4: "GF_ACTION"}
 FENCE_RETURNS = {ARDUPILOT: 1.0, PX4: 3.0}
-"""Value of the parameter by which who leaves the fence goes home; with others it only says so."""
+"""The parameter, and its value by which who leaves the fence goes home; with others it only says so."""
 
 LARGEST_PARAMETER = 1e6
 """What is more, or negative, isn't taken: a height of 10 km in centimetres is the most."""
@@ -104,14 +106,14 @@ class Vehicle:
 
     def usual_parameters(self) -> dict[str, float]:
         """Names and values as those of the autopilot that it is."""
-        if self.autopilot == ARDUPILOT:
-            return {"RTL_ALT": 100 * self.pilot.return_height, "FENCE_ACTION": FENCE_RETURNS[ARDUPILOT]}
-        return {"RTL_RETURN_ALT": self.pilot.return_height, "GF_ACTION": FENCE_RETURNS[PX4]}
+        name, parts = RETURN_HEIGHTS[self.autopilot]
+        return {name: parts * self.pilot.return_height, FENCE_ACTIONS[self.autopilot]: FENCE_RETURNS[self.autopilot]}
 
     def receive(self, data: bytes, peer: Peer, now: float) -> None:
         """A packet; what is no MAVLink, or not for it, is ignored."""
-        reader = self.readers.setdefault(peer, codec(SYSTEM, COMPONENT))
-        for message in reader.parse_buffer(data) or []:
+        if peer not in self.readers:
+            self.readers[peer] = codec(SYSTEM, COMPONENT)
+        for message in self.readers[peer].parse_buffer(data) or []:
             if message.get_type() == "BAD_DATA":
                 continue
             if getattr(message, "target_system", SYSTEM) in (0, SYSTEM):
@@ -123,11 +125,10 @@ class Vehicle:
         self.send(packed(self.codec, message), peer)
 
     def acknowledge(self, message: Any, peer: Peer, kind: int, result: int) -> None:
-        sender = message.get_srcSystem(), message.get_srcComponent()
-        self.answer(messages().MAVLink_mission_ack_message(*sender, result, kind), peer)
+        self.answer(messages().MAVLink_mission_ack_message(*sender_of(message), result, kind), peer)
 
     def on_mission_count(self, message: Any, peer: Peer, now: float) -> None:
-        kind, sender = message.mission_type, (message.get_srcSystem(), message.get_srcComponent())
+        kind, sender = message.mission_type, sender_of(message)
         if kind not in PLANS:
             self.acknowledge(message, peer, kind, UNSUPPORTED)
         elif self.upload is not None and (self.upload.peer, self.upload.sender) != (peer, sender):
@@ -198,12 +199,11 @@ class Vehicle:
         self.answer(request, upload.peer)
 
     def on_mission_request_list(self, message: Any, peer: Peer, now: float) -> None:
-        sender = message.get_srcSystem(), message.get_srcComponent()
         count = len(self.kept(message.mission_type))
-        self.answer(messages().MAVLink_mission_count_message(*sender, count, message.mission_type), peer)
+        self.answer(messages().MAVLink_mission_count_message(*sender_of(message), count, message.mission_type), peer)
 
     def on_mission_request_int(self, message: Any, peer: Peer, now: float) -> None:
-        sender, items = (message.get_srcSystem(), message.get_srcComponent()), self.kept(message.mission_type)
+        sender, items = sender_of(message), self.kept(message.mission_type)
         if message.seq < len(items):
             self.answer(message_of(items[message.seq], message.seq, message.mission_type, sender), peer)
         else:
@@ -239,7 +239,7 @@ class Vehicle:
         if message.param_id in self.parameters and 0 <= message.param_value <= LARGEST_PARAMETER:
             self.parameters[message.param_id] = message.param_value
             height, action = self.parameters.values()
-            self.pilot.return_height = height / (100.0 if self.autopilot == ARDUPILOT else 1.0)
+            self.pilot.return_height = height / RETURN_HEIGHTS[self.autopilot][1]
             self.pilot.fence_returns = action == FENCE_RETURNS[self.autopilot]
             self.say_parameter(message.param_id, peer)
 
@@ -263,9 +263,7 @@ class Vehicle:
         result = self.obeyed(message, peer)
         for words in spoken(self.pilot):
             self.answer(words, None)
-        ack = messages().MAVLink_command_ack_message(
-            message.command, result, 255, 0, message.get_srcSystem(), message.get_srcComponent()
-        )
+        ack = messages().MAVLink_command_ack_message(message.command, result, 255, 0, *sender_of(message))
         self.answer(ack, peer)
 
     on_command_int = on_command_long
@@ -299,15 +297,14 @@ class Vehicle:
 
     def mode_set(self, main: float, sub: float) -> int:
         """A mode by its number; on the ground only that of a mission makes a difference."""
-        known = ARDUPILOT_MODES if self.autopilot == ARDUPILOT else PX4_SUBMODES
         number = main if self.autopilot == ARDUPILOT else sub if main == PX4_AUTO else -1
-        wanted = [mode for mode, at in known.items() if at == number and mode not in (READY, CRASHED)]
+        wanted = next((mode for at, mode in MODES[self.autopilot].items() if at == number), None)
         actions = {HOLDING: self.pilot.hold, RETURNING: self.pilot.go_home, LANDING: self.pilot.land_here}
-        if not wanted:
-            return self.told(f"no mode {main:g}, {sub:g}")
-        if wanted[0] == FLYING_MISSION:
+        if wanted == FLYING_MISSION:
             return self.told(self.pilot.start())
-        return ACCEPTED if self.pilot.body.path is None else self.told(actions[wanted[0]]())
+        if wanted not in actions:
+            return self.told(f"no mode {main:g}, {sub:g}")
+        return ACCEPTED if self.pilot.body.path is None else self.told(actions[wanted]())
 
     def told(self, refused: str) -> int:
         """What to answer; a refusal is said in words, too."""

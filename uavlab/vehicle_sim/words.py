@@ -6,12 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from uavlab.mavlink.dialect import ARDUPILOT, messages
-from uavlab.vehicle_sim.pilot import CRASHED, FLYING_MISSION, HOLDING, LANDING, READY, RETURNING, Pilot
+from uavlab.mavlink.dialect import ARDUPILOT, ARDUPILOT_MODES, ARMED, EMERGENCY, ON_GROUND, PX4, PX4_MODES, messages
+from uavlab.vehicle_sim.pilot import CRASHED, HOLDING, LANDING, READY, Pilot
 
-PX4_SUBMODES = {READY: 3, FLYING_MISSION: 4, HOLDING: 3, RETURNING: 5, LANDING: 6, CRASHED: 6}
-ARDUPILOT_MODES = {READY: 5, FLYING_MISSION: 3, HOLDING: 5, RETURNING: 6, LANDING: 9, CRASHED: 9}
-"""Numbers of what it does."""
+MODES = {ARDUPILOT: ARDUPILOT_MODES, PX4: PX4_MODES}
+NUMBERS = {autopilot: {name: number for number, name in modes.items()} for autopilot, modes in MODES.items()}
+"""Of what it does, by its name."""
+
+INSTEAD = {READY: HOLDING, CRASHED: LANDING}
+"""What it says of modes that have no number."""
 
 PX4_AUTO = 4
 """PX4's main mode of all these."""
@@ -22,14 +25,11 @@ VERSION = 148
 CAN = 4 | 8 | 8192 | 16384 | 32768
 """Missions and commands as whole numbers, MAVLink 2, fences, rally points (MAV_PROTOCOL_CAPABILITY)."""
 
-QUADROTOR, OWN_MODES, GUIDED, ARMED = 2, 1, 8, 128
+QUADROTOR, OWN_MODES, GUIDED = 2, 1, 8
 """MAV_TYPE and bits of MAV_MODE_FLAG."""
 
-STANDBY, ACTIVE, EMERGENCY = 3, 4, 6
-"""MAV_STATE."""
-
-ON_GROUND, IN_AIR = 1, 2
-"""MAV_LANDED_STATE."""
+STANDBY, ACTIVE, IN_AIR = 3, 4, 2
+"""MAV_STATE and MAV_LANDED_STATE."""
 
 GPS_SENSOR, FIX_3D, SATELLITES, BOUNDARY, WARNING, UNKNOWN = 32, 3, 12, 3, 4, 65535
 LONGEST_TEXT = 50
@@ -39,8 +39,8 @@ def state_of(pilot: Pilot, autopilot: int) -> list[Any]:
     """What it says once a second: heartbeat, battery, whether it stands, its fence, its GPS."""
     words, where, uav = messages(), pilot.body.where, pilot.body.uav
     base = OWN_MODES | GUIDED | ARMED * pilot.armed
-    px4 = PX4_AUTO << 16 | PX4_SUBMODES.get(pilot.mode, 3) << 24
-    mode = ARDUPILOT_MODES.get(pilot.mode, 5) if autopilot == ARDUPILOT else px4
+    number = NUMBERS[autopilot][INSTEAD.get(pilot.mode, pilot.mode)]
+    mode = number if autopilot == ARDUPILOT else PX4_AUTO << 16 | number << 24
     status = EMERGENCY if pilot.mode == CRASHED else ACTIVE if pilot.armed else STANDBY
     left = max(round(100 * (1 - where.used / uav.battery)), 0) if np.isfinite(uav.battery) else -1
     sensors = [GPS_SENSOR] * 3
