@@ -507,8 +507,8 @@ with simulated_vehicle(city, campus.uav, gusty, (12.5, 17.5)) as vehicle, connec
 # And the law. In the European Union, and in Switzerland, which has adopted its rules (Regulations 2019/945 and
 # 2019/947), the *open category* needs no permission. It asks for a registered operator, a pilot with a
 # certificate, a drone that is always in sight, at most 120 m above the
-# ground, no flight over assemblies of people, and for drones like ours distance from people who aren't involved.
-# Countries add zones where nobody may fly. A delivery over a campus with people below is not in the open category. It
+# ground, no flight over assemblies of people, and, for drones like ours, a distance from people who aren't involved.
+# Each country adds its own no-fly zones. A delivery over a campus with people below is not in the open category. It
 # belongs to the *specific* one, with an assessment of its risk and usually a permission of the authority. There are
 # also rules on insurance, on identification by radio, and on privacy. Other countries have other rules.
 # This is no legal advice: ask the authority of your country before you fly.
