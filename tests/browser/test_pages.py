@@ -10,8 +10,8 @@ from pictures import shades_of_hue, share_of_hue
 from uavlab import plot, scene
 from uavlab.city import City, NoFlyZone, table1_city
 from uavlab.planners import astar
+from uavlab.plot.colors import sequential_color
 from uavlab.plot.ground import ZONE_COLOR
-from uavlab.plot.style import sequential_color
 from uavlab.scene.animation import EXPANSION_BATCHES
 
 

@@ -6,32 +6,51 @@ apart.
 """
 
 from uavlab.plot.charts import bars, convergence, front, profile
+from uavlab.plot.colors import (
+    BLACK,
+    BLUE,
+    CONVERGENCE_STYLES,
+    CRASH_COLOR,
+    GREEN,
+    ORANGE,
+    PINK,
+    ROUTE_COLORS,
+    SEQUENTIAL,
+    SKY,
+    YELLOW,
+    Style,
+    route_colors,
+    styles,
+)
 from uavlab.plot.curves import corner, curve_profile
 from uavlab.plot.flights import crash_rates, in_flight, safety_domain, tracks
 from uavlab.plot.maps import RISK_LABEL, expansions, field, ground_risk, layers, plan, risk, risk_norm, section
 from uavlab.plot.station import ground_station
 from uavlab.plot.stills import still
 from uavlab.plot.style import (
-    CONVERGENCE_STYLES,
-    CRASH_COLOR,
     DPI,
-    ROUTE_COLORS,
-    SEQUENTIAL,
     Drawn,
     draw_map,
     finished,
     new_figure,
-    route_colors,
 )
 
 __all__ = [
+    "BLACK",
+    "BLUE",
     "CONVERGENCE_STYLES",
     "CRASH_COLOR",
     "DPI",
+    "GREEN",
+    "ORANGE",
+    "PINK",
     "RISK_LABEL",
     "ROUTE_COLORS",
     "SEQUENTIAL",
+    "SKY",
+    "YELLOW",
     "Drawn",
+    "Style",
     "bars",
     "convergence",
     "corner",
@@ -55,5 +74,6 @@ __all__ = [
     "safety_domain",
     "section",
     "still",
+    "styles",
     "tracks",
 ]

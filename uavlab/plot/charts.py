@@ -14,11 +14,10 @@ from matplotlib.ticker import NullLocator
 from uavlab import checks
 from uavlab.city import City
 from uavlab.planners.comparison import Comparison
+from uavlab.plot.colors import CONVERGENCE_STYLES, ROUTE_COLORS, route_colors
 from uavlab.plot.ground import CUT_COLOR, datum_of, ground_below, height_label
 from uavlab.plot.style import (
-    CONVERGENCE_STYLES,
     DPI,
-    ROUTE_COLORS,
     Drawn,
     drawn_routes,
     finished,
@@ -26,7 +25,6 @@ from uavlab.plot.style import (
     named_routes,
     new_figure,
     plain,
-    route_colors,
 )
 from uavlab.route import Route
 

@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 from uavlab import checks
 from uavlab.city import City
 from uavlab.plot.charts import finite_or_nan
+from uavlab.plot.colors import ROUTE_COLORS, route_colors
 from uavlab.plot.ground import draw_cut
 from uavlab.plot.style import (
     DPI,
-    ROUTE_COLORS,
     Drawn,
     draw_map,
     finished,
@@ -25,7 +25,6 @@ from uavlab.plot.style import (
     level_of,
     named_routes,
     plain,
-    route_colors,
 )
 from uavlab.spline import Curve
 from uavlab.spline.curve import BANK, CONTACT

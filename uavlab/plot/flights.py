@@ -17,13 +17,10 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.flight import Flight, Rate
 from uavlab.offsets import SafetyDomain
+from uavlab.plot.colors import CONVERGENCE_STYLES, CRASH_COLOR, ROUTE_COLORS, SEQUENTIAL
 from uavlab.plot.ground import built_columns
 from uavlab.plot.style import (
-    CONVERGENCE_STYLES,
-    CRASH_COLOR,
     DPI,
-    ROUTE_COLORS,
-    SEQUENTIAL,
     add_color_bar,
     area_of,
     draw_map,

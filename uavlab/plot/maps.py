@@ -14,6 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from uavlab import checks
 from uavlab.city import City
 from uavlab.planners.potential_field import potential_forces
+from uavlab.plot.colors import ROUTE_COLORS, SEQUENTIAL
 from uavlab.plot.ground import (
     LAND_COLOR,
     built_columns,
@@ -25,8 +26,6 @@ from uavlab.plot.ground import (
 )
 from uavlab.plot.style import (
     DPI,
-    ROUTE_COLORS,
-    SEQUENTIAL,
     Drawn,
     add_color_bar,
     area_of,

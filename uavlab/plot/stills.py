@@ -18,6 +18,7 @@ from scipy.ndimage import maximum_filter
 from uavlab import checks
 from uavlab.city import City
 from uavlab.flight import Flight
+from uavlab.plot.colors import CRASH_COLOR, SEQUENTIAL, route_colors
 from uavlab.plot.flights import cross, label_of_flight, named_flights, track
 from uavlab.plot.ground import (
     LAND_COLOR,
@@ -31,7 +32,14 @@ from uavlab.plot.ground import (
     zones_at,
 )
 from uavlab.plot.maps import RISK_LABEL, ground_risk, risk_norm
-from uavlab.plot.style import CRASH_COLOR, DPI, SEQUENTIAL, Drawn, drawn_routes, finished, label_of, plain, route_colors
+from uavlab.plot.style import (
+    DPI,
+    Drawn,
+    drawn_routes,
+    finished,
+    label_of,
+    plain,
+)
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 

@@ -1,4 +1,4 @@
-"""What all figures share: colours that colour-blind readers can tell apart, maps from above, labels."""
+"""What all figures share: maps from above, routes on them, labels."""
 
 from __future__ import annotations
 
@@ -10,67 +10,18 @@ import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
-from matplotlib.colors import Colormap, to_hex
+from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
 
 from uavlab import checks
 from uavlab.city import City
+from uavlab.plot.colors import route_colors
 from uavlab.risk import RiskMap
 from uavlab.route import Route, Way, as_route
 
-ROUTE_COLORS = ("#D55E00", "#0072B2", "#000000", "#CC79A7", "#009E73", "#E69F00")
-CONVERGENCE_STYLES = tuple(zip(ROUTE_COLORS, ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2))), strict=True))
-"""Colour and line style of one planner among several: told apart in grey, too."""
-CRASH_COLOR = "#D00000"
-"""Of an X; nothing else has that shape, for readers to whom red is brown."""
-SEQUENTIAL = matplotlib.colormaps["cividis"]
 DPI = 100
 MOST_INCHES = 650
 """Along a side of a figure; matplotlib can't save larger ones in this resolution."""
-MOST_COLORS = 1_000_000
-"""More of them aren't asked for in earnest."""
-
-
-def route_colors(count: int) -> list[str]:
-    """A colour for each of several routes; after six they come again.
-
-    Parameters
-    ----------
-    count : int
-        How many routes, 0 to a million.
-
-    Returns
-    -------
-    list of str
-        As #rrggbb.
-
-    Raises
-    ------
-    ValueError
-        If `count` is no whole number from 0 to a million.
-
-    See Also
-    --------
-    plan : Draws routes in these colours.
-
-    References
-    ----------
-    M. Okabe and K. Ito, Color Universal Design: How to Make Figures and Presentations That Are Friendly to Colorblind
-    People, 2008.
-
-    Examples
-    --------
-    >>> from uavlab import plot
-    >>> plot.route_colors(2)
-    ['#D55E00', '#0072B2']
-    """
-    count = checks.whole("count", count, 0, MOST_COLORS)
-    return [ROUTE_COLORS[i % len(ROUTE_COLORS)] for i in range(count)]
-
-
-def sequential_color(share: float) -> str:
-    """The colour of a share from 0 (dark) to 1 (bright), as #rrggbb."""
-    return to_hex(SEQUENTIAL(share))
 
 
 def level_of(city: City, height: float, name: str = "height") -> int:

@@ -11,8 +11,8 @@ from meshcat.transformations import translation_matrix
 
 from uavlab.city import City
 from uavlab.flight import Flight
+from uavlab.plot.colors import CRASH_COLOR, sequential_color
 from uavlab.plot.flights import cross, track
-from uavlab.plot.style import CRASH_COLOR, sequential_color
 from uavlab.route import Route
 from uavlab.scene.shapes import as_number, draw_goal, draw_uav, draw_way, mesh, nearby, tube, tube_radius
 

@@ -15,11 +15,12 @@ from meshcat.animation import Animation
 from uavlab import checks
 from uavlab.city import City
 from uavlab.flight import Flight
+from uavlab.plot.colors import CRASH_COLOR, route_colors, sequential_color
 from uavlab.plot.flights import label_of_flight, named_flights
 from uavlab.plot.ground import ZONE_COLOR, ground_words, zone_label, zones_at
 from uavlab.plot.maps import risk_norm
 from uavlab.plot.stills import still
-from uavlab.plot.style import CRASH_COLOR, Drawn, drawn_routes, level_of, route_colors, sequential_color
+from uavlab.plot.style import Drawn, drawn_routes, level_of
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 from uavlab.scene.animation import FLIGHT_SECONDS, FRAMES_PER_SECOND, animate_expansion, animate_flight, animate_route

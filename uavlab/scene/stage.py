@@ -10,6 +10,7 @@ from matplotlib.colors import to_rgb
 from meshcat.transformations import translation_matrix
 
 from uavlab.city import City
+from uavlab.plot.colors import SEQUENTIAL
 from uavlab.plot.ground import (
     LAND_COLOR,
     MOST_QUADS,
@@ -21,7 +22,7 @@ from uavlab.plot.ground import (
 )
 from uavlab.plot.maps import ground_risk, risk_norm
 from uavlab.plot.stills import layer_triangles, voxel_surface
-from uavlab.plot.style import SEQUENTIAL, level_of
+from uavlab.plot.style import level_of
 from uavlab.risk import RiskMap
 from uavlab.scene.shapes import as_number, draw_lines, mesh, nearby
 
