@@ -94,7 +94,7 @@ MODULES = ("route", "vehicle", "power", "resilience", "statistics", "sweep")
 MADE_BY_THE_LIBRARY = {
     "city.Source", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights", "flight.Rate",
     "mavlink.CommandDeniedError", "mavlink.Link", "mavlink.MissionRejectedError", "mavlink.Telemetry", "mission.Check",
-    "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "power.Power",
+    "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "plot.Style", "power.Power",
     "prediction.Dataset", "resilience.Change", "risk.Fall", "scene.Scene", "spline.Feasibility", "spline.Limit",
     "vehicle.DataSheet", "vehicle_sim.SimulatedVehicle", "weather.DrydenParameters", "weather.ReferenceWind",
     "weather.WeatherRecord",
@@ -124,6 +124,14 @@ INSIDE = {
     "plot.new_figure",  # a step of figures
 }
 """No underscore, and yet nobody's but the library's own."""
+
+
+def shown():
+    """What all scenes may have."""
+    return {
+        "city": TOWN, "routes": (SEARCHED, {"curve": CURVE}), "safe_distance": 0.5, "expansion": False, "risk": RISK,
+        "slice_height": 2.5, "wind": CALM, "uav": DRONE, "colors": {"curve": "#0072B2"},
+    }  # fmt: skip
 
 
 def bowl(x):
@@ -512,13 +520,13 @@ CALLS = {
     "plot.profile": lambda: drawn(safe_distance=0.5),
     "plot.risk": lambda: {"risk_map": RISK, "height": 2.5, "routes": (LINE,)},
     "plot.risk_norm": lambda: {"risk_map": RISK},
+    "plot.styles": lambda: {"names": ["A*", "mine"], "colors": {"mine": "#009E73"}},
     "plot.route_colors": lambda: {"count": 3},
     "plot.safety_domain": lambda: {"samples": SAMPLES, "domains": {"best": DOMAIN}},
     "plot.section": lambda: {
         "city": TOWN, "height": 2.5, "values": PRICES, "routes": (LINE,), "label": "price [1]",
         "norm": colors.Normalize(0.0, 2.0),
     },
-    "plot.still": lambda: drawn(risk=RISK, flights=[FLIGHT], elevation_deg=32.0, azimuth_deg=-60.0),
     "plot.tracks": lambda: {
         "city": TOWN, "flights": {"a": [FLIGHT]}, "routes": {"a": LINE}, "area": (0.0, 12.0, 0.0, 12.0),
     },
@@ -608,17 +616,16 @@ CALLS = {
     "risk.vehicle_share": lambda: {"cars_per_km": 0.125, "lane_width": 3.0},
     # scene
     "scene.page": lambda: {
-        "city": TOWN, "routes": (SEARCHED, {"curve": CURVE}), "safe_distance": 0.5, "expansion": False, "risk": RISK,
-        "slice_height": 2.5, "flights": [FLIGHT], "title": "a town",
+        **shown(), "flights": [FLIGHT], "camera": "chase", "start_paused": True, "start_at": 0.5, "title": "a town",
     },
     "scene.page: of a search": lambda: {
-        "city": TOWN, "routes": (SEARCHED,), "safe_distance": 0.5, "expansion": True, "risk": None,
-        "slice_height": None, "flights": (), "title": None,
+        **shown(), "routes": (SEARCHED,), "expansion": True, "risk": None, "slice_height": None, "flights": (),
+        "camera": (-60.0, 30.0), "start_paused": False, "start_at": 2.0, "title": None,
     },
     "scene.show": lambda: {
-        "city": TOWN, "routes": (SEARCHED, {"curve": CURVE}), "safe_distance": 0.5, "expansion": False, "risk": RISK,
-        "slice_height": 2.5, "flights": {"a": FLIGHT}, "height": 300,
+        **shown(), "flights": {"a": FLIGHT}, "camera": "side", "start_paused": True, "start_at": 0.5, "height": 300,
     },
+    "scene.still": lambda: {**shown(), "flights": {"a": FLIGHT}, "camera": (-60.0, 30.0), "start_at": 0.5},
     # spline
     "spline.Curve": lambda: {
         "control": WAY, "ends": "phantom", "step": 0.5, "planner": "curve", "info": {}, "takeoff": 0, "landing": 0,

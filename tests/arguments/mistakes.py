@@ -123,7 +123,8 @@ RIGHTFUL = {
     "plot.in_flight.flights": {"a list"},  # by number
     "scene.page.flights": {"a mapping"},
     "scene.show.flights": {"a list"},
-    "plot.still.flights": {"a mapping"},
+    "scene.still.flights": {"a list"},
+    "plot.styles.names": {"nothing", "twice"},  # two things of one name
     "risk.osm_layers.cars_per_km": {"3", "a mapping"},  # the same for all classes
     "statistics.grouped_share_interval.counts": {"bools"},  # whether there was an event
     "risk.shelter_layer.ground": {"one number"},

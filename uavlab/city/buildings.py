@@ -17,6 +17,7 @@ import numpy.typing as npt
 import shapely
 
 from uavlab import checks
+from uavlab.city.surface import outer_surface
 
 FACE_TOLERANCE = 1e-9
 """How far outside a face [m] a point still counts as inside: rounding, not thickness."""
@@ -34,8 +35,6 @@ class Hull(NamedTuple):
     """(T, 3) of them for each triangle."""
     equations: np.ndarray
     """(T, 4) a, b, c, d of each triangle's plane: a·x + b·y + c·z + d is how far a point lies outside [m]."""
-    neighbors: np.ndarray
-    """(T, 3) triangles opposite of the corners."""
 
     @property
     def triangles(self) -> np.ndarray:
@@ -263,9 +262,7 @@ class Building:
             raise ValueError(
                 f"pieces of {self.name!r} must each span a volume: at least four corners, not all in one plane"
             ) from None
-        return tuple(
-            Hull(piece, h.simplices, h.equations, h.neighbors) for piece, h in zip(self.pieces, found, strict=True)
-        )
+        return tuple(Hull(piece, h.simplices, h.equations) for piece, h in zip(self.pieces, found, strict=True))
 
     @cached_property
     def bounds(self) -> np.ndarray:
@@ -309,28 +306,21 @@ class Building:
         return inside
 
     def triangles(self) -> np.ndarray:
-        """Surface triangles of all pieces, (T, 3 corners, 3) [m], seen counter-clockwise from outside."""
-        surfaces = []
-        for hull in self.hulls:
-            corners = hull.triangles
-            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-            inward = np.einsum("ij,ij->i", normals, hull.equations[:, :3]) < 0
-            corners[inward] = corners[inward][:, ::-1]
-            surfaces.append(corners)
-        return np.concatenate(surfaces)
+        """The surface as triangles, (T, 3 corners, 3) [m], seen counter-clockwise from outside, to be drawn.
+
+        Facets that two pieces share are left out.
+        """
+        return self.surface[0]
 
     def edges(self) -> np.ndarray:
-        """Ends (2E, 3) [m] of the edges of all pieces, two rows an edge, for drawing."""
-        return np.concatenate([crease_edges(hull) for hull in self.hulls])
+        """Ends (2E, 3) [m] of the surface's edges, two rows an edge, to be drawn."""
+        return self.surface[1]
 
-
-def crease_edges(hull: Hull) -> np.ndarray:
-    """Ends (2E, 3) of the edges between faces of a convex hull that don't lie in one plane."""
-    across = hull.neighbors  # [f, c]: the face across the edge of f that lies opposite of its corner c
-    creased = ~np.isclose(hull.equations[:, None], hull.equations[across], atol=1e-6).all(axis=-1)
-    face, corner = np.nonzero(creased & (np.arange(len(across))[:, None] < across))
-    ends = hull.simplices[face[:, None], (corner[:, None] + [1, 2]) % 3]
-    return hull.points[ends].reshape(-1, 3)
+    @cached_property
+    def surface(self) -> tuple[np.ndarray, np.ndarray]:
+        """Triangles and edges."""
+        triangles, edges = outer_surface(self.hulls)
+        return checks.frozen(triangles), checks.frozen(edges)
 
 
 def checked_ends(bottom: float, what: str, upper: float, name: str) -> tuple[float, float]:

@@ -86,6 +86,8 @@ class Flight:
         What it took from the battery, and where that went; none of an `OffsetProcess`, which has no thrust.
     changes : list of Change
         What the monitor changed.
+    goal : (3,) array, optional
+        Where it should have arrived [m].
 
     See Also
     --------
@@ -112,6 +114,7 @@ class Flight:
     clearance: float
     energy: Energy | None
     changes: list[Change] = field(default_factory=list)
+    goal: np.ndarray | None = None
 
     def __repr__(self) -> str:
         grounded = "grounded: " if self.outcome == "grounded" else ""

@@ -399,7 +399,8 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
     flight_log = np.concatenate(logs)
     name, reason = ending_of(outcome, ending, flight_log[-1], path, state)
     energy = energy_of(state, setup.uav, path.points[0]) if isinstance(now, Wind) else None
-    return Flight(name, reason, flight_log, float(state.sums[LEAST]), energy, monitor.log if monitor else [])
+    changes = monitor.log if monitor else []
+    return Flight(name, reason, flight_log, float(state.sums[LEAST]), energy, changes, path.points[-1])
 
 
 OUT_OF_TIME = "out of time"

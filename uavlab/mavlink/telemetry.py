@@ -332,7 +332,8 @@ class FlightLog:
         log[:, -1] = [np.linalg.norm(one.velocity) for one in self.samples]
         outcome = self.outcome
         reason = "" if outcome == "arrived" else f"{outcome} after {log[-1, 0]:.1f} s at {checks.show(position[-1])}"
-        return Flight(outcome, reason, log, Route(position).clearance(self.city), None)
+        goal = self.mission.path(self.city).points[-1]
+        return Flight(outcome, reason, log, Route(position).clearance(self.city), None, goal=goal)
 
     def to_csv(self, path: str | Path) -> None:
         """Write a line for each sample, with place, height, speed, battery, mode and distance from the plan.

@@ -1,4 +1,4 @@
-"""Figures in matplotlib: plans from above, profiles along a route, sections, stills of a scene.
+"""Figures in matplotlib: plans from above, profiles along a route, sections, charts.
 
 Every function returns a `Figure`: the last line of a notebook's cell shows it, `figure.savefig("name.png")` writes it.
 Colours are those of Okabe and Ito, or of a map that is even in lightness, so that colour-blind readers can tell them
@@ -26,7 +26,6 @@ from uavlab.plot.curves import corner, curve_profile
 from uavlab.plot.flights import crash_rates, in_flight, safety_domain, tracks
 from uavlab.plot.maps import RISK_LABEL, expansions, field, ground_risk, layers, plan, risk, risk_norm, section
 from uavlab.plot.station import ground_station
-from uavlab.plot.stills import still
 from uavlab.plot.style import (
     DPI,
     Drawn,
@@ -73,7 +72,6 @@ __all__ = [
     "route_colors",
     "safety_domain",
     "section",
-    "still",
     "styles",
     "tracks",
 ]

@@ -1,109 +1,148 @@
-"""Shapes of a scene: tubes, cones, a quadrotor, as one mesh for each kind of thing."""
+"""Shapes of a scene as triangles: tubes, balls, arrows, a wind sock, a quadrotor."""
 
 from __future__ import annotations
 
-from itertools import pairwise
-
-import meshcat
-import meshcat.geometry as g
 import numpy as np
-from meshcat.transformations import translation_matrix
 
-from uavlab.city import City
-from uavlab.route import Route
+from uavlab.plot.colors import LineStyle
 
-FAR_OFF = 1000.0
-"""Scenes lie about the multiple of this that is next to their map's centre [m]: viewers count in float32."""
-
-
-def nearby(city: City, points: np.ndarray) -> np.ndarray:
-    """Points (..., 3) [m] of a map that may lie far off, such as in UTM, from a multiple of a kilometre near it."""
-    return points - FAR_OFF * np.round(city.bounds.mean(axis=0) / FAR_OFF)
+SIDES = 6
+"""Of a tube."""
+DASHES: dict[str, tuple[float, ...]] = {"-": (), "--": (3.7, 1.6), "-.": (6.4, 1.6, 1.0, 1.6), ":": (1.0, 1.65)}
+"""Lengths drawn and left out, in widths of the line, as in matplotlib."""
 
 
-def draw_route(scene: meshcat.Visualizer, city: City, route: Route, color: str, *, thin: bool = False) -> None:
-    """A route as a tube, a ball at its start and a cone at its goal."""
-    draw_way(scene, city, route.points, color, thickness=0.4 if thin else 1.0)
-    draw_goal(scene["goal"], city, route.points[-1], color)
+def tube(points: np.ndarray, radius: float) -> np.ndarray:
+    """Triangles (T, 3, 3) of a closed tube along a polyline (N, 3), mitred where it bends."""
+    points = without_repeats(np.asarray(points, dtype=float))
+    if len(points) < 2:
+        return np.empty((0, 3, 3))
+    legs = np.diff(points, axis=0)
+    legs /= np.linalg.norm(legs, axis=1, keepdims=True)
+    along = np.vstack([legs[:1], legs[:-1] + legs[1:], legs[-1:]])
+    sharp = np.linalg.norm(along, axis=1) < 0.5
+    along[sharp] = np.vstack([legs, legs[-1:]])[sharp]
+    angle = 2 * np.pi * np.arange(SIDES) / SIDES
+    rings = np.empty((len(points), SIDES, 3))
+    side = np.cross(along[0], np.eye(3)[np.abs(along[0]).argmin()])
+    for number, direction in enumerate(along / np.linalg.norm(along, axis=1, keepdims=True)):
+        side = side - side @ direction * direction  # carried along, so that the tube doesn't twist
+        if np.linalg.norm(side) < 1e-6:
+            side = np.cross(direction, np.eye(3)[np.abs(direction).argmin()])
+        side /= np.linalg.norm(side)
+        ring = np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * np.cross(direction, side)
+        rings[number] = points[number] + radius * ring
+    ends = fan(rings[0][::-1], points[0]), fan(rings[-1], points[-1])
+    return np.concatenate([wall(rings), *ends])
 
 
-def draw_way(scene: meshcat.Visualizer, city: City, points: np.ndarray, color: str, *, thickness: float = 1.0) -> None:
-    """A tube along points, and a ball at the first of them."""
-    radius, material = tube_radius(city), g.MeshLambertMaterial(color=as_number(color))
-    surface = tube(nearby(city, points), thickness * radius)
-    if len(surface):  # a UAV that stays where it is leaves none
-        scene["tube"].set_object(mesh(surface), material)
-    scene["start"].set_object(g.Sphere(2.5 * radius), material)
-    scene["start"].set_transform(translation_matrix(nearby(city, points[0])))
+def wall(rings: np.ndarray) -> np.ndarray:
+    """Triangles between rings (R, S, 3), each joined to the next."""
+    low, high = rings[:-1], rings[1:]
+    next_low, next_high = np.roll(low, -1, axis=1), np.roll(high, -1, axis=1)
+    halves = np.stack([low, next_low, next_high], axis=2), np.stack([low, next_high, high], axis=2)
+    return np.concatenate(halves).reshape(-1, 3, 3)
 
 
-def draw_goal(scene: meshcat.Visualizer, city: City, goal: np.ndarray, color: str) -> None:
-    """A cone around the goal."""
-    radius = tube_radius(city)
-    cone = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 6 * radius]])
-    shape = mesh(tube(cone, 3 * radius, end_radius=0.0))
-    scene.set_object(shape, g.MeshLambertMaterial(color=as_number(color)))
-    scene.set_transform(translation_matrix(nearby(city, goal) - [0.0, 0.0, 3 * radius]))
+def fan(ring: np.ndarray, tip: np.ndarray) -> np.ndarray:
+    """Triangles between a ring (S, 3) and a point."""
+    return np.stack([ring, np.roll(ring, -1, axis=0), np.broadcast_to(tip, ring.shape)], axis=1)
 
 
-def tube_radius(city: City) -> float:
-    """Of a route's tube [m], by the size of the map."""
-    return 0.004 * float(np.linalg.norm(city.bounds[1] - city.bounds[0]))
+def without_repeats(points: np.ndarray) -> np.ndarray:
+    """A polyline (N, 3) without points that are where the one before them is."""
+    return points[np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])]
 
 
-def as_number(color: str) -> int:
-    """#rrggbb as meshcat has it."""
-    return int(color.lstrip("#"), 16)
+def thinned(points: np.ndarray, tolerance: float) -> np.ndarray:
+    """A polyline without the points that lie within a tolerance [m] of the line between their neighbours."""
+    points = without_repeats(points)
+    kept = np.arange(len(points))
+    for tries in range(40):
+        before, here, after = points[kept[:-2]], points[kept[1:-1]], points[kept[2:]]
+        leg = after - before
+        share = np.einsum("ij,ij->i", here - before, leg) / np.maximum(np.einsum("ij,ij->i", leg, leg), 1e-18)
+        distance = np.linalg.norm(here - before - np.clip(share, 0, 1)[:, None] * leg, axis=1)
+        needless = distance < tolerance / 8  # several rounds add up
+        needless[(np.arange(len(needless)) + tries) % 2 == 0] = False  # never two neighbours at once
+        if not needless.any() and tries % 2:
+            break
+        kept = np.delete(kept, np.flatnonzero(needless) + 1)
+    return points[kept]
 
 
-def draw_uav(scene: meshcat.Visualizer, city: City, safe_distance: float | None) -> None:
-    """A quadrotor, larger than life, with the ball around it that should stay clear."""
-    scale = 0.02 * float(np.linalg.norm(city.bounds[1] - city.bounds[0]))
-    scene["body"].set_object(mesh(quadrotor(scale)), g.MeshLambertMaterial(color=0x222222, side=2))
-    if safe_distance is not None:
-        scene["clearance"].set_object(
-            g.Sphere(safe_distance), g.MeshLambertMaterial(color=0xFFFFFF, transparent=True, opacity=0.35)
-        )
+def dashed(points: np.ndarray, line: LineStyle, width: float) -> list[np.ndarray]:
+    """The pieces of a polyline that a line style draws, each a polyline; `width` is that of the line [m]."""
+    pattern = np.array(DASHES[line] if isinstance(line, str) else line[1]) * width
+    points = without_repeats(points)
+    if not len(pattern) or len(points) < 2:
+        return [points]
+    distance = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    turns = int(np.ceil(distance[-1] / pattern.sum()))
+    marks = np.concatenate([[0.0], np.cumsum(np.tile(pattern, turns))])
+    pieces = []
+    for begin, end in zip(marks[:-1:2], np.minimum(marks[1::2], distance[-1]), strict=True):
+        if begin < end:
+            inner = points[(distance > begin) & (distance < end)]
+            tips = np.column_stack([np.interp((begin, end), distance, axis) for axis in points.T])
+            pieces.append(np.vstack([tips[:1], inner, tips[1:]]))
+    return pieces
 
 
-def mesh(triangles: np.ndarray, colors: np.ndarray | None = None) -> g.TriangularMeshGeometry:
-    """Triangles (T, 3, 3) as a geometry; no corner is shared, so that the light shows each face flat."""
-    vertices = np.asarray(triangles, dtype=np.float32).reshape(-1, 3)
-    return g.TriangularMeshGeometry(vertices, np.arange(len(vertices)).reshape(-1, 3), color=colors)
+def ball(radius: float, *, sides: int = 24) -> np.ndarray:
+    """Triangles of a ball about the origin."""
+    tilt = np.linspace(-np.pi / 2, np.pi / 2, sides // 2 + 1)[1:-1]
+    angle = 2 * np.pi * np.arange(sides) / sides
+    rings = np.stack(np.broadcast_arrays(
+        np.cos(tilt)[:, None] * np.cos(angle), np.cos(tilt)[:, None] * np.sin(angle), np.sin(tilt)[:, None]
+    ), axis=-1)  # fmt: skip
+    poles = np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
+    return radius * np.concatenate([wall(rings), fan(rings[0][::-1], poles[0]), fan(rings[-1], poles[1])])
 
 
-def draw_lines(scene: meshcat.Visualizer, ends: np.ndarray, color: int) -> None:
-    """Straight lines between each two of the points (2L, 3)."""
-    geometry = g.PointsGeometry(np.asarray(ends, dtype=np.float32).T)
-    scene.set_object(g.LineSegments(geometry, g.LineBasicMaterial(color=color)))
+def cone(foot: np.ndarray, tip: np.ndarray, radius: float, *, tip_radius: float = 0.0) -> np.ndarray:
+    """Triangles of a cone or a frustum between two points."""
+    along = (tip - foot) / np.linalg.norm(tip - foot)
+    side = np.cross(along, np.eye(3)[np.abs(along).argmin()])
+    side /= np.linalg.norm(side)
+    angle = 2 * np.pi * np.arange(2 * SIDES) / (2 * SIDES)
+    ring = np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * np.cross(along, side)
+    rings = np.stack([foot + radius * ring, tip + tip_radius * ring])
+    return np.concatenate([wall(rings), fan(rings[0][::-1], foot), fan(rings[1], tip)])
 
 
-def tube(points: np.ndarray, radius: float, *, end_radius: float | None = None, sides: int = 8) -> np.ndarray:
-    """Triangles (T, 3, 3) of a round tube along a polyline (N, 3); with `end_radius` each leg is a cone."""
-    angle = np.linspace(0.0, 2 * np.pi, sides + 1)[:, None]
-    triangles = []
-    for start, end in pairwise(np.asarray(points, dtype=float)):
-        along = end - start
-        length = np.linalg.norm(along)
-        if length == 0:
-            continue
-        along = along / length
-        across = np.cross(along, [0.0, 0.0, 1.0] if abs(along[2]) < 0.9 else [1.0, 0.0, 0.0])
-        across /= np.linalg.norm(across)
-        ring = np.cos(angle) * across + np.sin(angle) * np.cross(along, across)
-        low, high = start + radius * ring, end + (radius if end_radius is None else end_radius) * ring
-        triangles.append(np.stack([low[:-1], low[1:], high[1:]], axis=1))
-        triangles.append(np.stack([low[:-1], high[1:], high[:-1]], axis=1))
-        triangles.append(np.stack([low[1:], low[:-1], np.broadcast_to(start, (sides, 3))], axis=1))
-        triangles.append(np.stack([high[:-1], high[1:], np.broadcast_to(end, (sides, 3))], axis=1))
-    return np.concatenate(triangles) if triangles else np.empty((0, 3, 3))
+def arrow(foot: np.ndarray, tip: np.ndarray, width: float) -> np.ndarray:
+    """Triangles of an arrow."""
+    neck = foot + 0.65 * (tip - foot)
+    return np.concatenate([tube(np.array([foot, neck]), width / 2), cone(neck, tip, 1.5 * width)])
 
 
-def quadrotor(size: float) -> np.ndarray:
-    """Triangles of a small quadrotor, `size` metres from rotor axis to centre: two arms and four discs."""
-    tips = size * np.array([(1, 1, 0), (-1, 1, 0), (-1, -1, 0), (1, -1, 0)]) / np.sqrt(2)
-    parts = [tube(tips[[0, 2]], 0.08 * size), tube(tips[[1, 3]], 0.08 * size)]
-    axle = np.array([[0.0, 0.0, 0.1 * size], [0.0, 0.0, 0.14 * size]])
-    parts += [tube(tip + axle, 0.55 * size, sides=16) for tip in tips]
-    parts.append(tube(np.array([[0.0, 0.0, -0.15 * size], [0.0, 0.0, 0.15 * size]]), 0.3 * size))
-    return np.concatenate(parts)
+def wind_sock(foot: np.ndarray, wind: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles of a mast with a wind sock, and their colours (T, 3): striped, the more level the stronger the wind."""
+    top = foot + np.array([0.0, 0.0, size])
+    speed = float(np.linalg.norm(wind))
+    droop = np.arctan(2.0 / max(speed, 1e-3) ** 2)  # weight against dynamic pressure: level from about 8 m/s on
+    level = np.append(wind / max(speed, 1e-9), 0.0)
+    along = np.cos(droop) * level - np.sin(droop) * np.array([0.0, 0.0, 1.0])
+    radii = 0.14 * size * np.linspace(1.0, 0.5, 6)
+    places = top + 0.8 * size * np.linspace(0.0, 1.0, 6)[:, None] * along
+    parts = [tube(np.array([foot, top]), 0.02 * size)]
+    tones = [(0.25, 0.25, 0.25)]
+    for number in range(5):
+        parts.append(cone(places[number], places[number + 1], radii[number], tip_radius=radii[number + 1]))
+        tones.append((0.84, 0.37, 0.0) if number % 2 == 0 else (1.0, 1.0, 1.0))
+    colors = [np.broadcast_to(tone, (len(part), 3)) for part, tone in zip(parts, tones, strict=True)]
+    return np.concatenate(parts), np.concatenate(colors)
+
+
+def quadrotor(diameter: float, color: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles of a quadrotor about its centre, nose to the east, and their colours (T, 3): front rotors are light."""
+    arm = diameter / 3.1
+    tips = arm * np.array([(1, 1, 0), (-1, 1, 0), (-1, -1, 0), (1, -1, 0)]) / np.sqrt(2)
+    axle = arm * np.array([0.0, 0.0, 0.12])
+    parts = [tube(tips[[0, 2]], 0.08 * arm), tube(tips[[1, 3]], 0.08 * arm), ball(0.32 * arm, sides=10)]
+    parts += [cone(tip + axle, tip + 1.4 * axle, 0.55 * arm, tip_radius=0.55 * arm) for tip in tips]
+    dark, light = 0.75 * np.array(color), 0.35 * np.array(color) + 0.65
+    tones = [dark, dark, np.array(color), light, dark, dark, light]
+    colors = [np.broadcast_to(tone, (len(part), 3)) for part, tone in zip(parts, tones, strict=True)]
+    return np.concatenate(parts), np.concatenate(colors)

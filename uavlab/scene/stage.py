@@ -1,13 +1,10 @@
-"""What a scene shows of a city: ground and grid, buildings, no-fly zones, risk; and from where it is seen."""
+"""What a scene shows of a city: ground and grid, buildings or voxels, no-fly zones, risk, wind."""
 
 from __future__ import annotations
 
-import meshcat
-import meshcat.geometry as g
 import numpy as np
 import numpy.typing as npt
 from matplotlib.colors import to_rgb
-from meshcat.transformations import translation_matrix
 
 from uavlab.city import City
 from uavlab.plot.colors import SEQUENTIAL
@@ -15,55 +12,72 @@ from uavlab.plot.ground import (
     LAND_COLOR,
     MOST_QUADS,
     ZONE_COLOR,
+    built_columns,
     ground_below,
     ground_lattice,
     lattice_triangles,
+    voxels_above_ground,
+    zone_label,
     zone_surface,
+    zones_at,
 )
 from uavlab.plot.maps import ground_risk, risk_norm
-from uavlab.plot.stills import layer_triangles, voxel_surface
 from uavlab.plot.style import level_of
 from uavlab.risk import RiskMap
-from uavlab.scene.shapes import as_number, draw_lines, mesh, nearby
+from uavlab.scene.drawing import Drawing, Entry, Lines, Surface
+from uavlab.scene.shapes import arrow, wind_sock
+from uavlab.weather import Wind
 
-FIELD_OF_VIEW_DEG = 40.0
+LEVEL_COLOR = "#E9E9E4"
+GRID_COLOR = "#B8B8B0"
+EDGE_COLOR = "#555555"
+VOXEL_COLOR = "#B0C4DE"
+WIND_COLOR = "#3B6E8F"
+THIN = 0.25
+"""Sheets that are thinner [m] are drawn once, not from both sides; edges shorter than four times it aren't drawn."""
+MOST_TRIANGLES = 20_000
+"""Of a city; beyond it thin sheets and short edges are looked for."""
+MOST_EDGES = 60_000
+"""Of voxels; more would be a grey surface."""
 
 
-def set_stage(scene: meshcat.Visualizer, city: City, *, painted: bool = False) -> None:
-    """Ground, if it isn't painted, light and a camera that sees the whole map."""
+def begun(city: City, title: str | None) -> Drawing:
+    """A drawing of the city alone."""
     low, high = city.bounds
-    size = high - low
-    center = (low + high) / 2
-    top = max((building.bounds[1, 2] for building in city.buildings), default=high[2])
     floor = low[2] if city.ground is None else city.ground.min()
-    center[2] = floor + 0.34 * (max(top, floor) - floor)
-    reach = float(np.hypot(size[0], size[1]))
-    scene["/Background"].set_property("top_color", [0.86, 0.92, 1.0])
-    scene["/Background"].set_property("bottom_color", [1.0, 1.0, 1.0])
-    scene["/Axes"].set_property("visible", False)
-    scene["/Grid"].set_property("visible", False)
-    scene["/Lights/FillLight/<object>"].set_property("position", [-4.0, -7.0, 9.0])
-    scene["/Lights/FillLight/<object>"].set_property("intensity", 0.45)
-    scene.set_transform(translation_matrix(-nearby(city, center)))  # the camera circles the origin
-    camera = scene["/Cameras/default/rotated/<object>"]
-    camera.set_property("fov", FIELD_OF_VIEW_DEG)
-    camera.set_property("near", reach / 100)
-    camera.set_property("far", 20 * reach)
-    camera.set_property("position", [0.48 * reach, 0.86 * reach, 1.18 * reach])  # east, up, south
+    box = np.array([[*low[:2], floor], [*high[:2], floor]])
+    drawing = Drawing(title or city.name, (low + high) / 2, box)
+    drawing.seen.append(np.array([(x, y, floor) for x in box[:, 0] for y in box[:, 1]]))
+    draw_city(drawing, city)
+    return drawing
+
+
+def show_too(drawing: Drawing, points: np.ndarray) -> None:
+    """Make room in the frame for points (..., 3) [m]."""
+    points = points.reshape(-1, 3)
+    drawing.seen.append(points)
+    drawing.box[1, 2] = max(drawing.box[1, 2], float(points[:, 2].max()))
+
+
+def draw_ground(drawing: Drawing, city: City, risk_map: RiskMap | None) -> None:
+    """The ground, unless risk is painted on it, and a grid of round lengths."""
+    (west, south, bottom), (east, north, _) = city.bounds
+    lift = 0.001 * float(np.hypot(east - west, north - south))
     if city.ground is None:
-        corners = np.array([(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])])
-        ground = nearby(city, np.column_stack([corners, np.full(4, low[2] - 0.002 * reach)]))
-        scene["ground"].set_object(mesh(ground[[[0, 1, 2], [0, 2, 3]]]), g.MeshBasicMaterial(color=0xE9E9E4))
-    elif not painted:
-        lattice = nearby(city, ground_lattice(city))
-        vertices = np.round(256 * lattice.reshape(-1, 3)) / 256  # short numbers make small pages
-        land = g.TriangularMeshGeometry(vertices.astype(np.float32), lattice_triangles(lattice.shape[:2]))
-        scene["ground"].set_object(land, g.MeshLambertMaterial(color=as_number(LAND_COLOR), side=2))
-    draw_lines(scene["grid"], nearby(city, grid_lines(city, 0.002 * reach)), 0xB8B8B0)
+        corners = np.array([(west, south, 0.0), (east, south, 0.0), (east, north, 0.0), (west, north, 0.0)])
+        corners[:, 2] = bottom - lift
+        drawing.parts["ground"] = Surface(corners[[[0, 1, 2], [0, 2, 3]]], LEVEL_COLOR, lit=False)
+    elif risk_map is None:
+        lattice = ground_lattice(city)
+        triangles = lattice.reshape(-1, 3)[lattice_triangles(lattice.shape[:2])]
+        drawing.parts["ground"] = Surface(triangles, LAND_COLOR)
+        show_too(drawing, lattice)
+    drawing.parts["grid"] = Lines(grid_lines(city, lift if city.ground is not None or risk_map else 0.0), GRID_COLOR)
+    drawing.notes.append(f"squares of {grid_spacing(city):g} m")
 
 
 def grid_lines(city: City, lift: float) -> np.ndarray:
-    """Ends (2L, 3) [m] of a grid's lines: on the bottom of the map, or `lift` above its ground, which they follow."""
+    """Ends (2L, 3) [m] of a grid's lines, `lift` above the map's bottom, or above its ground, which they follow."""
     (low, high), spacing = city.bounds, grid_spacing(city)
     lines = []
     for axis, other in ((0, 1), (1, 0)):
@@ -73,7 +87,8 @@ def grid_lines(city: City, lift: float) -> np.ndarray:
             points[:, axis] = value
             points[:, other] = np.linspace(low[other], high[other], count)
             if city.ground is not None:
-                points[:, 2] = ground_below(city, points) + lift
+                points[:, 2] = ground_below(city, points)
+            points[:, 2] += lift
             lines.append(np.repeat(points, 2, axis=0)[1:-1])
     return np.concatenate(lines)
 
@@ -85,49 +100,173 @@ def grid_spacing(city: City) -> float:
     return float(magnitude * min((1, 2, 5, 10), key=lambda m: abs(extent / (magnitude * m) - 10)))
 
 
-def draw_city(scene: meshcat.Visualizer, city: City) -> None:
-    """All buildings as one mesh with their colours, and their edges as lines."""
+def draw_city(drawing: Drawing, city: City) -> None:
+    """Buildings as they are with their edges; without any, the voxels with theirs."""
     if not city.buildings:
-        surface = nearby(city, voxel_surface(city))
-        if len(surface):
-            scene["voxels"].set_object(mesh(surface), g.MeshLambertMaterial(color=0xB0C4DE))
+        draw_voxels(drawing, city)
         return
     surfaces = [building.triangles() for building in city.buildings]
-    colors = [
-        np.tile(to_rgb(building.color), (3 * len(triangles), 1))
-        for building, triangles in zip(city.buildings, surfaces, strict=True)
-    ]
-    scene["buildings"].set_object(
-        mesh(nearby(city, np.concatenate(surfaces)), np.concatenate(colors)), g.MeshLambertMaterial(vertexColors=True)
-    )
+    triangles, colors = np.concatenate(surfaces), colors_of(city, [len(surface) for surface in surfaces])
     edges = np.concatenate([building.edges() for building in city.buildings])
-    draw_lines(scene["edges"], nearby(city, edges), 0x555555)
+    if len(triangles) > MOST_TRIANGLES:
+        kept = not_twice(triangles)
+        triangles, colors = triangles[kept], colors[kept]
+        edges = edges.reshape(-1, 2, 3)
+        edges = edges[np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) > 4 * THIN]
+        edges = edges[not_twice(edges)].reshape(-1, 3)
+    drawing.parts["buildings"] = Surface(triangles, colors)
+    drawing.parts["edges"] = Lines(edges, EDGE_COLOR)
+    show_too(drawing, triangles)
 
 
-def draw_zones(scene: meshcat.Visualizer, city: City) -> None:
-    """All no-fly zones as one mesh that one can look through, and their edges as lines."""
+def colors_of(city: City, counts: list[int]) -> np.ndarray:
+    """The buildings' colours, one for each of their triangles."""
+    return np.repeat([to_rgb(building.color) for building in city.buildings], counts, axis=0)
+
+
+def not_twice(shapes: np.ndarray) -> np.ndarray:
+    """Positions of the triangles or edges (N, corners, 3) that aren't thinner than `THIN` nor twins within it."""
+    corners = shapes.shape[1]
+    places = np.round(shapes.reshape(-1, 3) / THIN).astype(np.int64)
+    near = np.sort(np.unique(places, axis=0, return_inverse=True)[1].reshape(-1, corners), axis=1)
+    wide = np.flatnonzero((np.diff(near, axis=1) > 0).all(axis=1))
+    return np.sort(wide[np.unique(near[wide], axis=0, return_index=True)[1]])
+
+
+def draw_voxels(drawing: Drawing, city: City) -> None:
+    """Occupied voxels above the ground, with the edges of each, if there aren't too many to see."""
+    occupied = voxels_above_ground(city)
+    if not occupied.any():
+        return
+    surface = voxel_surface(city)
+    drawing.parts["voxels"] = Surface(surface, VOXEL_COLOR)
+    show_too(drawing, surface)
+    edges = voxel_edges(city)
+    if len(edges) <= 2 * MOST_EDGES:
+        drawing.parts["edges"] = Lines(edges, EDGE_COLOR)
+        drawing.notes.append(f"voxels of {city.cell:g} m")
+
+
+def voxel_surface(city: City) -> np.ndarray:
+    """Triangles (T, 3, 3) [m] between occupied voxels and free ones or the border; rows of faces are one rectangle.
+
+    Where the city has ground, what it reaches into is left out.
+    """
+    occupied = voxels_above_ground(city)
+    padded = np.pad(occupied, 1)
+    triangles = []
+    for axis in range(3):
+        across, along = sorted({0, 1, 2} - {axis})
+        for side in (0, 1):
+            beyond = np.roll(padded, 1 - 2 * side, axis=axis)[1:-1, 1:-1, 1:-1]
+            corner, extent = rows_of(occupied & ~beyond, along)
+            corner[:, axis] += side
+            step = np.eye(3)[across]
+            quad = [corner, corner + step, corner + step + extent, corner + extent]
+            if (side == 1) != (np.cross(step, np.eye(3)[along])[axis] > 0):
+                quad = quad[::-1]  # counter-clockwise seen from outside
+            triangles += [np.stack([quad[0], quad[1], quad[2]], axis=1), np.stack([quad[0], quad[2], quad[3]], axis=1)]
+    return city.origin + city.cell * np.concatenate(triangles)
+
+
+def voxel_edges(city: City) -> np.ndarray:
+    """Ends (2E, 3) [m] of the edges of faces between occupied voxels and free ones; rows of edges are one line."""
+    padded = np.pad(voxels_above_ground(city), 1)
+    lines = []
+    for along in range(3):
+        first, second = sorted({0, 1, 2} - {along})
+        count = padded.astype(np.int8)
+        count = count + np.roll(count, 1, axis=first)
+        count = count + np.roll(count, 1, axis=second)  # of the four voxels around the edge at their lower corner
+        inner = [slice(1, None)] * 3
+        inner[along] = slice(1, -1)
+        corner, extent = rows_of(((count > 0) & (count < 4))[tuple(inner)], along)
+        lines.append(np.stack([corner, corner + extent], axis=1).reshape(-1, 3))
+    return city.origin + city.cell * np.concatenate(lines)
+
+
+def rows_of(cells: np.ndarray, along: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of True along an axis: corner (R, 3) of the first of each, and extent (R, 3) [cells]."""
+    turned = np.moveaxis(cells, along, -1)
+    steps = np.diff(turned.astype(np.int8), axis=-1, prepend=0, append=0)
+    first, last = np.argwhere(steps == 1), np.argwhere(steps == -1)  # of each row: same order, so they pair up
+    corner, extent = np.zeros((2, len(first), 3))
+    kept = [axis for axis in range(3) if axis != along]
+    corner[:, kept], corner[:, along] = first[:, :2], first[:, 2]
+    extent[:, along] = last[:, 2] - first[:, 2]
+    return corner, extent
+
+
+def draw_zones(drawing: Drawing, city: City) -> None:
+    """All no-fly zones as one surface that one can look through, and their edges."""
     surface, edges = zone_surface(city)
     if len(surface):
-        color = as_number(ZONE_COLOR)
-        glass = g.MeshLambertMaterial(color=color, transparent=True, opacity=0.28, side=2, depthWrite=False)
-        scene["walls"].set_object(mesh(nearby(city, surface)), glass)
-        draw_lines(scene["edges"], nearby(city, edges), color)
+        drawing.parts["no-fly zones"] = Surface(surface, ZONE_COLOR, opacity=0.28)
+        drawing.parts["their edges"] = Lines(edges, ZONE_COLOR)
+        drawing.legend.append(Entry("patch", zone_label(zones_at(city)), ZONE_COLOR))
+        show_too(drawing, np.minimum(surface, city.bounds[1]))
 
 
-def draw_risk(scene: meshcat.Visualizer, risk_map: RiskMap, slice_height: float | None) -> None:
+def draw_risk(drawing: Drawing, risk_map: RiskMap, slice_height: float | None) -> None:
     """The ground painted with the risk above it, and a slice at a height, both on one logarithmic scale."""
     city = risk_map.city
-    norm = risk_norm(risk_map)
+    drawing.risk = norm = risk_norm(risk_map)
 
-    def paint(name: str, values: np.ndarray, shown: np.ndarray, height: npt.ArrayLike, opacity: float) -> None:
+    def painted(values: np.ndarray, shown: np.ndarray, height: npt.ArrayLike, opacity: float) -> Surface:
         triangles = layer_triangles(city, height)[shown.ravel()].reshape(-1, 3, 3)
-        colors = np.repeat(SEQUENTIAL(norm(values[shown]))[:, :3], 6, axis=0)
-        material = g.MeshBasicMaterial(vertexColors=True, transparent=opacity < 1, opacity=opacity, side=2)
-        scene[name].set_object(mesh(nearby(city, triangles), colors), material)
+        return Surface(triangles, np.repeat(SEQUENTIAL(norm(values[shown]))[:, :3], 2, axis=0), opacity, lit=False)
 
-    everywhere = np.ones(city.shape[:2], dtype=bool)
     below = city.origin[2] if city.ground is None else ground_lattice(city, max(city.shape))[..., 2]
-    paint("ground", ground_risk(risk_map), everywhere, below + 0.01 * city.cell, 1.0)
+    everywhere = np.ones(city.shape[:2], dtype=bool)
+    drawing.parts["risk on the ground"] = painted(ground_risk(risk_map), everywhere, below + 0.01 * city.cell, 1.0)
     if slice_height is not None:
         k = level_of(city, slice_height)
-        paint("slice", risk_map.rate[:, :, k], risk_map.flyable[:, :, k], slice_height, 0.6)
+        flyable = risk_map.flyable[:, :, k]
+        drawing.parts["risk at a height"] = painted(risk_map.rate[:, :, k], flyable, slice_height, 0.6)
+        drawing.notes.append(f"the plane shows the risk at z = {slice_height:g} m")
+        show_too(drawing, drawing.parts["risk at a height"].triangles)  # type: ignore[union-attr]
+
+
+def layer_triangles(city: City, height: npt.ArrayLike) -> np.ndarray:
+    """Two triangles for each column of voxels, (nx·ny, 2, 3, 3) [m], at a height or at those of its corners.
+
+    Parameters
+    ----------
+    city : City
+    height : float or (nx + 1, ny + 1) array
+        z [m] of all, or of each corner of the columns, as from `ground_lattice`.
+    """
+    i, j = np.indices((city.shape[0] + 1, city.shape[1] + 1))
+    corners = city.origin + city.cell * np.stack([i, j, np.zeros(i.shape)], axis=-1)
+    corners[..., 2] = height
+    return corners.reshape(-1, 3)[lattice_triangles(i.shape)].reshape(-1, 2, 3, 3)
+
+
+def draw_wind(drawing: Drawing, city: City, wind: Wind) -> None:
+    """A wind sock where nothing is built, and arrows where the mean wind comes onto the map."""
+    (west, south, _), (east, north, _) = city.bounds
+    size = 0.07 * float(np.hypot(east - west, north - south))
+    drawing.wind = blows = np.array(wind.mean[:2])
+    places = np.array([(west, south), (east, south), (west, north), (east, north)])
+    inside = places + 0.6 * size * np.sign((places.min(axis=0) + places.max(axis=0)) / 2 - places)
+    built = built_columns(city)
+    cells = np.clip(city.cell_of(np.column_stack([inside, np.full(4, city.bounds[0, 2])]))[:, :2], 0,
+                    np.array(city.shape[:2]) - 1)  # fmt: skip
+    corner = int(np.argmin(built[cells[:, 0], cells[:, 1]]))  # the first free one
+    foot = np.array([*inside[corner], city.bounds[0, 2]])
+    foot[2] = ground_below(city, foot)
+    drawing.parts["wind sock"] = Surface(*wind_sock(foot, blows, size))
+    speed = float(np.hypot(*blows))
+    gusts = {"none": "no gusts", "dryden": "Dryden gusts"}.get(wind.gusts, f"gusts of σ = {wind.deviation:g} m/s")
+    words = f"wind {speed:.3g} m/s, {gusts}" if speed else f"no mean wind, {gusts}"
+    drawing.legend.append(Entry("wind", words, WIND_COLOR))
+    if speed:
+        along, middle = blows / speed, np.array([(west + east) / 2, (south + north) / 2])
+        reach = min(((east - west) / 2) / max(abs(along[0]), 1e-9), ((north - south) / 2) / max(abs(along[1]), 1e-9))
+        height = drawing.box[:, 2].mean()
+        shafts = []
+        for share in (-0.3, 0.0, 0.3):
+            beside = share * min(east - west, north - south) * np.array([-along[1], along[0]])
+            tail = np.array([*(middle + beside - reach * along), height])
+            shafts.append(arrow(tail, tail + 1.2 * size * np.array([*along, 0.0]), 0.1 * size))
+        drawing.parts["wind"] = Surface(np.concatenate(shafts), WIND_COLOR)
