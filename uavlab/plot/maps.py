@@ -65,7 +65,7 @@ def plan(city: City, *routes: Drawn) -> Figure:
     --------
     section : The map cut at a height.
     profile : Height and clearance along the routes.
-    still : The same in three dimensions.
+    uavlab.scene.still : The same in three dimensions.
 
     Examples
     --------

@@ -12,7 +12,6 @@ from uavlab.city import City
 from uavlab.flight import Flight
 from uavlab.plot.colors import CRASH_COLOR, Style, sequential_color, styles
 from uavlab.plot.flights import label_of_flight, named_flights
-from uavlab.plot.ground import ground_words
 from uavlab.plot.style import Drawn, drawn_routes, level_of
 from uavlab.risk import RiskMap
 from uavlab.route import Route
@@ -62,11 +61,7 @@ def drawing_of(
     if wind is not None:
         checks.instance("wind", wind, Wind)
     checks.instance("uav", uav, UAV)
-    if slice_height is not None and risk is None:
-        raise ValueError("slice_height needs risk=..., the map to cut")
-    if slice_height is not None:
-        slice_height = checks.number("slice_height", slice_height)
-        level_of(city, slice_height, "slice_height")
+    slice_height = checked_slice(city, risk, slice_height)
     if checks.flag("expansion", expansion) and not (planned and "order" in planned[0].info):
         raise ValueError("expansion needs a first route planned with record=True")
     if expansion and named:
@@ -74,19 +69,15 @@ def drawing_of(
 
     drawing = begun(city, title)
     draw_ground(drawing, city, risk)
-    drawing.notes += filter(None, [ground_words(city)])
     if risk is not None:
         draw_risk(drawing, risk, slice_height)
-    planners = [route.planner for route in planned]
-    names = planners + [name for name in named if name not in planners]  # a flight looks like the route that it flies
-    looks = styles(names, colors)
-    by_name = dict(zip(names, looks, strict=True))
+    looks = looks_of(planned, named, colors)
     draw_routes(drawing, planned, looks, thin=bool(named))
     fly: Any = {"uav": uav, "wind": wind or CALM, "safe_distance": safe_distance}
     if expansion:
         draw_expansion(drawing, city, planned[0].info["order"])
     elif named:
-        draw_flights(drawing, named, [by_name[name] for name in named], **fly)
+        draw_flights(drawing, named, looks[len(planned) :], **fly)
     else:
         fly_routes(drawing, planned, looks, **fly)
     signs(drawing)
@@ -94,11 +85,36 @@ def drawing_of(
     if wind is not None:
         draw_wind(drawing, city, wind)
     if drawing.movers:
-        ring = "" if len(drawing.movers) > MOST_NAMED else "; a ring shows where it is"
-        drawing.notes.append(f"UAVs are drawn at their size, {uav.diameter:g} m{ring}")
-        if safe_distance is not None:
-            drawing.legend.append(Entry("ball", f"distance to keep, {safe_distance:g} m", drawing.movers[0].color))
+        say_sizes(drawing, uav, safe_distance)
     return drawing
+
+
+def checked_slice(city: City, risk_map: RiskMap | None, height: float | None) -> float | None:
+    """A height [m] on the map where the risk is cut."""
+    if height is None:
+        return None
+    if risk_map is None:
+        raise ValueError("slice_height needs risk=..., the map to cut")
+    height = checks.number("slice_height", height)
+    level_of(city, height, "slice_height")
+    return height
+
+
+def looks_of(routes: Sequence[Route], flights: Mapping[str, Flight], colors: Mapping[str, str] | None) -> list[Style]:
+    """How each route looks, and then each flight: like the route that it flies, where one has its name."""
+    planners = [route.planner for route in routes]
+    others = [name for name in flights if name not in planners]
+    looks = styles(planners + others, colors)
+    by_name = dict(zip(planners + others, looks, strict=True))
+    return looks[: len(planners)] + [by_name[name] for name in flights]
+
+
+def say_sizes(drawing: Drawing, uav: UAV, safe_distance: float | None) -> None:
+    """What of a UAV is true to scale."""
+    ring = "" if len(drawing.movers) > MOST_NAMED else "; a ring shows where it is"
+    drawing.notes.append(f"UAVs are drawn at their size, {uav.diameter:g} m{ring}")
+    if safe_distance is not None:
+        drawing.legend.append(Entry("ball", f"distance to keep, {safe_distance:g} m", drawing.movers[0].color))
 
 
 def width_of(drawing: Drawing) -> float:

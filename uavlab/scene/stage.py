@@ -15,6 +15,7 @@ from uavlab.plot.ground import (
     built_columns,
     ground_below,
     ground_lattice,
+    ground_words,
     lattice_triangles,
     voxels_above_ground,
     zone_label,
@@ -74,6 +75,7 @@ def draw_ground(drawing: Drawing, city: City, risk_map: RiskMap | None) -> None:
         show_too(drawing, lattice)
     drawing.parts["grid"] = Lines(grid_lines(city, lift if city.ground is not None or risk_map else 0.0), GRID_COLOR)
     drawing.notes.append(f"squares of {grid_spacing(city):g} m")
+    drawing.notes += filter(None, [ground_words(city)])
 
 
 def grid_lines(city: City, lift: float) -> np.ndarray:
