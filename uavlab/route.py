@@ -299,7 +299,7 @@ class Route:
         return np.abs((np.diff(heading) + np.pi) % (2 * np.pi) - np.pi)
 
     def clearance_profile(self, city: City) -> tuple[np.ndarray, np.ndarray]:
-        """Clearance all along the route, by exact voxel traversal.
+        """Distance to the nearest obstacle all along the route, every quarter of a voxel, and where it is least.
 
         Parameters
         ----------
@@ -308,9 +308,9 @@ class Route:
         Returns
         -------
         distance : (M,) array
-            Distance flown at the middle of the stay in each voxel [m].
+            Distance flown [m], rising.
         clearance : (M,) array
-            Least distance to an obstacle's surface during the stay [m]; 0 outside of the map.
+            Exact distance to an obstacle's surface there [m]; 0 outside of the map. Its least is `Route.clearance`.
 
         Raises
         ------
@@ -320,6 +320,7 @@ class Route:
         See Also
         --------
         Route.clearance : The least of it.
+        uavlab.city.City.distance : Of any points.
         uavlab.plot.profile : Draws it.
 
         Examples
@@ -329,19 +330,28 @@ class Route:
         >>> route = Route([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
         >>> distance, clearance = route.clearance_profile(table1_city())
         >>> f"from {clearance.min():.1f} to {clearance.max():.1f} m"
-        'from 5.0 to 10.8 m'
+        'from 5.0 to 11.2 m'
         """
         checks.instance("city", city, City)
         if len(self.points) == 0:
             return np.empty(0), np.empty(0)
-        index, length = city.voxels_along(self.points)
+        everywhere = float(np.linalg.norm(city.bounds[1] - city.bounds[0]))
+        way = self.resample(city.cell / 4)
+        clearance = np.where(city.inside(way.points), city.distance(way.points, everywhere), 0.0)
+        least = self.clearance(city)
+        if clearance.min() <= least:
+            return way.distance, clearance
+
+        def points_at(flown: np.ndarray) -> np.ndarray:
+            return np.column_stack([np.interp(flown, self.distance, axis) for axis in self.points.T])
+
+        _, length = city.voxels_along(self.points)
         leave = np.cumsum(length)
-        start, end = (
-            np.stack([np.interp(flown, self.distance, axis) for axis in self.points.T], axis=1)
-            for flown in (leave - length, leave)
-        )
-        inside = ((index >= 0) & (index < city.shape)).all(axis=1)
-        return leave - length / 2, np.where(inside, city.segment_distance(start, end), 0.0)
+        stay = int(city.segment_distance(points_at(leave - length), points_at(leave)).argmin())
+        within = np.linspace(leave[stay] - length[stay], leave[stay], 101)
+        there = within[city.distance(points_at(within), everywhere).argmin()]
+        place = np.searchsorted(way.distance, there)
+        return np.insert(way.distance, place, there), np.insert(clearance, place, least)
 
     def clearance(self, city: City) -> float:
         """Least distance to an obstacle's surface on the whole way, exact, whatever the voxels that are passed.
