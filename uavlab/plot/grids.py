@@ -18,7 +18,7 @@ from uavlab.plot.frames import label as checked_label
 from uavlab.plot.panels import by_few_names, figure_of, finite_or_gaps, panel, styles_on
 from uavlab.plot.planes import checked_mask, checked_paths, draw_paths
 from uavlab.plot.series import draw_points
-from uavlab.plot.style import plain
+from uavlab.plot.style import add_color_bar, plain
 
 HATCHES = ("///", "...", "xx", "\\\\\\", "++", "oo", "--")
 MOST_CELLS = 2500
@@ -83,10 +83,10 @@ def heat_map(
     Raises
     ------
     ValueError
-        If `x` or `y` doesn't rise, `values` or one of `hatched` hasn't their shape, `contours` aren't finite numbers,
-        one of `hatched`, `paths`, `points`, `notes`, `colors` is no mapping or has too many names, one of `x_label`,
-        `y_label`, `label` says nothing, `norm` is no `Normalize`, `equal` no bool, `title` no text, or `axes` are none
-        of matplotlib.
+        If `x` or `y` doesn't rise, `values` or one of `hatched` hasn't their shape, `contours` aren't finite numbers
+        that differ, one of `hatched`, `paths`, `points`, `notes`, `colors` is no mapping or has too many names, one of
+        `x_label`, `y_label`, `label` says nothing, `norm` is no `Normalize`, `equal` no bool, `title` no text, or
+        `axes` are none of matplotlib.
 
     See Also
     --------
@@ -100,12 +100,14 @@ def heat_map(
     >>> load, rain = np.linspace(0, 1.2, 25), np.linspace(0, 300, 31)
     >>> wind = 13.0 - 2.0 * load[:, None] - 0.001 * rain
     >>> figure = plot.heat_map(load, rain, wind, "load [kg]", "rain [mm/h]", "wind [m/s]", contours=[11, 12])
-    >>> figure.axes[0].get_xlabel(), figure.axes[1].get_ylabel()
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].child_axes[0].get_ylabel()
     ('load [kg]', 'wind [m/s]')
     """
     x, y = rising("x", x), rising("y", y)
     shown = finite_or_gaps("values", values, len(x), len(y))
     levels = sorted(checks.array("contours", list(checks.listed("contours", contours, "numbers")), None).tolist())
+    if len(set(levels)) < len(levels):
+        raise ValueError(f"contours must differ from each other, got {contours!r:.60}")
     masks = {name: checked_mask(f"hatched[{name!r}]", mask, shown.shape)
              for name, mask in by_few_names("hatched", hatched).items()}  # fmt: skip
     lines, marks = checked_paths("paths", paths), checked_paths("points", points)
@@ -116,7 +118,7 @@ def heat_map(
     scale = "equal" if checks.flag("equal", equal) else "auto"
     axes = panel(axes, 7.2, 4.8)
     image = axes.pcolormesh(x, y, shown.T, cmap=SEQUENTIAL, norm=norm, shading="nearest", rasterized=True)
-    figure_of(axes).colorbar(image, ax=axes, label=plain(label))
+    add_color_bar(figure_of(axes), axes, image, plain(label))
     if levels:
         drawn = axes.contour(x, y, shown.T, levels, colors="white", linewidths=1.2)
         axes.clabel(drawn, fmt="%g", fontsize=8)
@@ -153,7 +155,7 @@ def matrix(
     values : (R, C) array
         Written in the cells; NaN isn't.
     rows, columns : sequence of str
-        Names of the R rows, from top to bottom, and of the C columns.
+        Names of the R rows, from top to bottom, and of the C columns, all different.
     row_label, column_label, label : str
         What rows, columns and colours are.
     shares : bool
@@ -209,7 +211,7 @@ def matrix(
         shade, norm = table / total, norm or Normalize(0.0, 1.0)
     axes = panel(axes, 2.4 + 0.55 * len(names["columns"]), 1.4 + 0.5 * len(names["rows"]))
     image = axes.imshow(shade, cmap=SEQUENTIAL, norm=norm, aspect="auto")
-    figure_of(axes).colorbar(image, ax=axes, label=plain(label))
+    add_color_bar(figure_of(axes), axes, image, plain(label))
     for (i, j), value in np.ndenumerate(table):
         if np.isfinite(value):
             dark = float(np.ma.filled(image.norm(shade[i, j]), 0.0)) < 0.55
@@ -237,4 +239,6 @@ def checked_texts(name: str, values: Any) -> list[str]:
     texts = [checks.text(f"{name}[{n}]", text) for n, text in enumerate(checks.listed(name, values, "texts"))]
     if not texts:
         raise ValueError(f"{name} must hold at least one text, got none")
+    if len(set(texts)) < len(texts):
+        raise ValueError(f"{name} must differ from each other, got {texts!r:.60}")
     return texts

@@ -105,7 +105,8 @@ def write_notes(axes: Axes, notes: dict[str, np.ndarray]) -> None:
     taken: list[Bbox] = []
     for text, point in notes.items():
         note = axes.annotate(
-            plain(text), (float(point[0]), float(point[1])), (0, 0), textcoords="offset points", ha="center", va="center", fontsize=8,
+            plain(text), (float(point[0]), float(point[1])), (0, 0), textcoords="offset points", fontsize=8,
+            ha="center", va="center",
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.75},
             arrowprops={"arrowstyle": "-", "color": "0.5", "linewidth": 0.7},
         )  # fmt: skip

@@ -107,11 +107,11 @@ def figure_of(axes: Axes) -> Figure:
     return figure.figure if isinstance(figure, SubFigure) else figure
 
 
-def by_few_names(name: str, values: Any, most: int = MOST_NAMES, *, least: int = 0) -> dict[str, Any]:
-    """Things by name, none at all for None, not more than can be told apart."""
-    if values is None:
+def by_few_names(name: str, values: Any, most: int = MOST_NAMES, *, least: int | None = None) -> dict[str, Any]:
+    """Things by name, not more than can be told apart; without `least` it may be None, which is none at all."""
+    if values is None and least is None:
         return {}
-    named = checks.by_name(name, values, least=least)
+    named = checks.by_name(name, values, least=least or 0)
     if len(named) > most:
         raise ValueError(f"{name} must be at most {most}, to be told apart, got {len(named)}")
     return named
@@ -146,17 +146,18 @@ def named_so_far(figure: Figure) -> dict[str, str]:
     found: dict[str, str] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            color = handle.get_color() if isinstance(handle, Line2D) else np.ravel(handle.get_facecolor())[:3]
+            drawn: Any = handle  # a line, else an area
+            color: Any = drawn.get_color() if isinstance(handle, Line2D) else np.ravel(drawn.get_facecolor())[:3]
             found.setdefault(label, to_hex(color).upper())
     return found
 
 
-def explain(axes: Axes, label: str, *, marker: str = "", color: str = GREY) -> None:
+def explain(axes: Axes, label: str, *, marker: str = "", color: str = GREY, alpha: float = 0.4) -> None:
     """An entry of the legend alone: an area, or a mark."""
     if marker:
         axes.plot([], [], marker, color=color, label=plain(label))
     else:
-        axes.fill_between([], [], [], color=color, alpha=0.4, linewidth=0, label=plain(label))
+        axes.fill_between([], [], [], color=color, alpha=alpha, linewidth=0, label=plain(label))
 
 
 def with_legend(axes: Axes) -> Figure:

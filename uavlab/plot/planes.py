@@ -9,17 +9,17 @@ import matplotlib.patheffects
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.colors import ListedColormap, Normalize, to_rgb
 from matplotlib.figure import Figure
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.plot.colors import SEQUENTIAL, Style
+from uavlab.plot.colors import BLACK, SEQUENTIAL, Style
 from uavlab.plot.frames import Frame, checked_frame, framed
 from uavlab.plot.frames import label as checked_label
-from uavlab.plot.panels import by_few_names, explain, figure_of, panel, rows_of_points, styles_on
+from uavlab.plot.panels import by_few_names, explain, figure_of, finite_or_gaps, panel, rows_of_points, styles_on
 from uavlab.plot.series import draw_points
-from uavlab.plot.style import area_of, draw_map, plain, with_gaps
+from uavlab.plot.style import add_color_bar, area_of, draw_map, plain, with_gaps
 
 HALO = [matplotlib.patheffects.Stroke(linewidth=4.0, foreground="white"), matplotlib.patheffects.Normal()]
 """About lines on colours."""
@@ -146,7 +146,7 @@ def value_map(
         begins another.
     points : mapping of arrays (M, 2), optional
         Marks at points (east, north) [m], by name, at most seven; the first is a disc, the second a triangle, as start
-        and goal elsewhere.
+        and goal elsewhere; points called "start" and "goal" are black unless `colors` says otherwise.
     notes : mapping of pairs, optional
         Texts with the point (east, north) [m] beside which each stands.
     area : (west, east, south, north), optional
@@ -168,9 +168,9 @@ def value_map(
     Raises
     ------
     ValueError
-        If `city` is no `City`, `values` hasn't shape (nx, ny), `label` says nothing; one of `paths`, `points`,
-        `notes`, `colors` is no mapping, has too many names, or something of another shape; `area` is not four numbers,
-        or lies beside the map; `norm` is no `Normalize`, `title` no text, or `axes` are none of matplotlib.
+        If `city` is no `City`, `values` hasn't shape (nx, ny) or is infinite, `label` says nothing; one of `paths`,
+        `points`, `notes`, `colors` is no mapping, has too many names, or something of another shape; `area` is not four
+        numbers, or lies beside the map; `norm` is no `Normalize`, `title` no text, or `axes` are none of matplotlib.
 
     See Also
     --------
@@ -188,7 +188,7 @@ def value_map(
     'start'
     """
     checks.instance("city", city, City)
-    shown = checks.array("values", with_gaps(values), *city.shape[:2], finite=False)
+    shown = finite_or_gaps("values", with_gaps(values), *city.shape[:2])
     checked_label("label", label)
     if norm is not None:
         checks.instance("norm", norm, Normalize)
@@ -196,8 +196,8 @@ def value_map(
     axes = panel(axes, 6.4, 5.6)
     axes.set_facecolor("black")
     image = draw_map(axes, city, shown, SEQUENTIAL, norm=norm)
-    figure_of(axes).colorbar(image, ax=axes, label=plain(label))
-    return on_map(axes, frame, lines, marks, colors, window)
+    add_color_bar(figure_of(axes), axes, image, plain(label))
+    return on_map(axes, frame, lines, marks, MAP_COLORS | frame.colors, window)
 
 
 def area_map(
@@ -225,7 +225,7 @@ def area_map(
         Lines through points (east, north) [m], by name, at most seven; a row of NaN begins another.
     points : mapping of arrays (M, 2), optional
         Marks at points (east, north) [m], by name, at most seven; the first is a disc, the second a triangle, as start
-        and goal elsewhere.
+        and goal elsewhere; points called "start" and "goal" are black unless `colors` says otherwise.
     notes : mapping of pairs, optional
         Texts with the point (east, north) [m] beside which each stands.
     area : (west, east, south, north), optional
@@ -269,16 +269,19 @@ def area_map(
               for name, mask in by_few_names("areas", areas, least=1).items()}  # fmt: skip
     lines, marks, frame, window = checked_map(city, paths, points, notes, area, title, colors)
     axes = panel(axes, 6.4, 5.6)
-    asked = {"building": BUILDING} | frame.colors
-    styles = styles_on(axes, list(dict.fromkeys([*lines, *fields, *marks])), asked)
+    asked = MAP_COLORS | frame.colors
+    styles = styles_on(axes, list(dict.fromkeys(["building", *fields, *lines, *marks])), asked)
     for name, field in fields.items():
-        shade = ListedColormap([styles[name].color])
-        draw_map(axes, city, np.where(field, 0.0, np.nan), shade, alpha=0.6 if name != "building" else 1.0)
-        axes.fill_between([], [], [], color=styles[name].color, alpha=0.6, linewidth=0, label=plain(name))
+        color = styles[name].color
+        draw_map(axes, city, np.where(field, 0.0, np.nan), ListedColormap([1 - AREA * (1 - np.array(to_rgb(color)))]))
+        explain(axes, name, color=color, alpha=AREA)
     return on_map(axes, frame, lines, marks, asked, window)
 
 
-BUILDING = "#595959"
+MAP_COLORS = {"building": BLACK, "start": BLACK, "goal": BLACK}
+"""On every map, unless asked otherwise."""
+AREA = 0.65
+"""Of the colour of a name in an area, the rest white, so that lines and marks stand out."""
 
 
 def checked_map(

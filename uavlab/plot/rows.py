@@ -20,6 +20,8 @@ MOST_ROWS = 60
 """In a panel."""
 ROW_HEIGHT = 0.3
 """Of a series in a row [inches]."""
+PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.8}
+"""Behind numbers."""
 Range = tuple[float | None, float | None]
 
 
@@ -210,9 +212,10 @@ def drawn_rows(
             end, value = draw(axes, values, height, styles[series], marker)
             if digits is not None and np.isfinite(value):
                 axes.annotate(f"{value:.{digits}f}", (end, height), (6, 0), textcoords="offset points", va="center",
-                              fontsize=8, color=styles[series].color)  # fmt: skip
+                              fontsize=8, color="0.2", bbox=PAPER)  # fmt: skip
     if draw is draw_runs and any(len(values) > 1 for by_row in table.values() for values in by_row.values()):
         explain(axes, "a run (the large mark: their median)", marker="|")
+    axes.margins(x=0.12 if digits is not None else 0.05)
     figure = framed(axes, frame._replace(labels=(label + added, "")), styles)
     axes.set_yticks(range(len(names)), [plain(name) for name in names])
     axes.set_ylim(len(names) - 0.5, -0.5)

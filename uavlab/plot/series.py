@@ -128,7 +128,10 @@ def lines(
     x = checks.array("x", x, None)
     if not len(x):
         raise ValueError("x must hold at least one value, got none")
-    drawn = {name: finite_or_gaps(f"series[{name!r}]", y, len(x)) for name, y in by_few_names("series", series).items()}
+    drawn = {
+        name: finite_or_gaps(f"series[{name!r}]", y, len(x))
+        for name, y in by_few_names("series", series, least=0).items()
+    }
     marks = {name: rows_of_points(f"points[{name!r}]", xy) for name, xy in by_few_names("points", points).items()}
     ranges = {name: band_ends(name, pair, len(x)) for name, pair in by_few_names("bands", bands).items()}
     said_of("point_label", point_label, "points", drawn.keys() & marks.keys())
