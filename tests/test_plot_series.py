@@ -149,6 +149,8 @@ def test_bands_have_the_colour_of_their_line_and_say_what_they_are():
         plot.lines(X, {"a": X}, "x [m]", "y [m]", band_label="95 %")
     with pytest.raises(ValueError, match=r"bands\['a'\] must have its lower end below"):
         plot.lines(X, {}, "x [m]", "y [m]", bands={"a": (X + 1, X - 1)})
+    with pytest.raises(ValueError, match=r"bands\['a'\] must have its lower end below its upper one, got 10 as lower"):
+        plot.lines(X, {}, "x [m]", "y [m]", bands={"a": (X, 9.95)})  # of which one alone crosses
     with pytest.raises(ValueError, match=r"bands\['a'\] must be its lower and its upper end, got 3"):
         plot.lines(X, {}, "x [m]", "y [m]", bands={"a": (1, 2, 3)})
 

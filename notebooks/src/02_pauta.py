@@ -58,7 +58,7 @@ density = OffsetModel(mean=0.0, sigma=1.0).density(x)
 within, beyond = "within 3σ: 99.73 %", "beyond: 0.135 % on each side"
 bands = {within: (0, np.where(np.abs(x) <= 3, density, np.nan)), beyond: (0, np.where(np.abs(x) >= 3, density, np.nan))}
 shown = {"places": {"−3σ": -3, "3σ": 3}, "bands": bands, "colors": {within: GREEN, beyond: ORANGE}}
-figure, panels = plot.new_panels(1, 2, width=9.6, height=4.0)
+figure, panels = plot.new_panels(1, 2, width=9.0, height=3.7)
 tops = {"The Pauta criterion (REPARE Fig. 2)": 0.42, "enlarged, to see 0.27 %": 0.012}
 for axes, (title, top) in zip(panels, tops.items(), strict=True):
     plot.lines(x, {"density": density}, "offset x on one axis [σ]", "density n(x) [1/σ]", y_range=(0, top), title=title,
@@ -252,7 +252,7 @@ assert math.isclose(joint.circle(), offsets.pauta_radius(2), rel_tol=1e-9)
 assert abs(1 - 3 / joint.circle() - 1 / 8) < 0.004
 
 # %% tags=["figure"]
-grid = np.linspace(-4.5, 4.5, 226)
+grid = np.linspace(-4.5, 4.5, 91)
 angle = np.linspace(0, 2 * np.pi, 181)
 circle = np.column_stack([np.cos(angle), np.sin(angle)])
 shown, distance = pushes[:5000], np.hypot(*pushes[:5000].T)
@@ -290,7 +290,7 @@ outlines = {
     "ellipse of 3σ, 98.89 %": tilted.ellipse(offsets.coverage(3, 2)),
     "circle, 99.73 %": tilted.circle() * circle,
 }
-points = {"route": (0, 0), "mean offset": tilted.mean, "a drawn offset": pushes[:3000]}
+points = {"route": (0, 0), "mean offset": tilted.mean, "a drawn offset": pushes[:1000]}
 colors = dict(zip([*outlines, *points], (BLUE, PINK, ORANGE, BLACK, GREEN, "0.5"), strict=True))
 plot.diagram("horizontal offset [m]", "vertical offset [m]", paths=outlines, points=points, colors=colors)
 
@@ -373,7 +373,7 @@ laws = {"Gaussian": gaussian, "force ∝ |V|V, I = 0.3": city}
 reach = "offset downwind x − μ [σ]"
 three = {"at 3σ": [(3, 100 * law.beyond(3)) for law in laws.values()]}
 same = {"where 0.135 % are beyond": [(law.boundary(), 100 * law.beyond(law.boundary())) for law in laws.values()]}
-figure, (left, right) = plot.new_panels(1, 2, width=9.2, height=4.0)
+figure, (left, right) = plot.new_panels(1, 2, width=9.0, height=3.7)
 plot.lines(x, {name: law.density(x) for name, law in laws.items()}, reach, "density [1/σ]", places={"3σ": 3}, axes=left)
 x = x[x >= 0]
 plot.lines(x, {name: 100 * law.beyond(x) for name, law in laws.items()}, reach, "chance of more than x [%]",
@@ -401,7 +401,8 @@ _, rough = offsets.offset_paths(1.0, 60.0, 3, count=1, natural_frequency=1.0, ro
 assert paths.shape == (3, 1201)
 without = "Ornstein–Uhlenbeck, see below"
 flights = {without: rough[0]} | {f"flight {n} (Eq. 11)": path for n, path in enumerate(paths, start=1)}
-plot.lines(time, flights, "time [s]", "offset towards the wall [σ]", limits={"3σ towards\nthe wall": 3},
+_, axes = plot.new_figure(7.2, 3.4)
+plot.lines(time, flights, "time [s]", "offset towards the wall [σ]", limits={"3σ towards\nthe wall": 3}, axes=axes,
            colors=dict(zip(flights, ("0.75", BLUE, BLACK, PINK), strict=True)))  # fmt: skip
 
 # %% [markdown]
