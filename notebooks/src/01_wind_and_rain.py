@@ -20,7 +20,6 @@
 import tempfile
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 from ipywidgets import FloatSlider, interact
 
@@ -36,7 +35,7 @@ from uavlab.weather import (
     reference_wind,
 )
 
-BLUE, RED, GREEN, ORANGE = "#0072B2", "#D55E00", "#009E73", "#E69F00"
+RED, GREEN = plot.ORANGE, plot.GREEN
 
 # %% [markdown]
 # REPARE speaks of a civil light quadrotor and gives no figures for it. Ours has figures that are usual for the class,
@@ -66,17 +65,15 @@ year = greensboro_weather()
 density = air_density(year.temperature_c, year.humidity_percent, year.pressure_hpa)
 print(year.describe().loc[["min", "mean", "max"]].round(1))
 
-# %%
-figure, axes = plt.subplots(figsize=(6.4, 3.8), dpi=plot.DPI, layout="constrained")
-axes.plot(year.temperature_c[::5], density[::5], ".", color="0.6", markersize=3, label="Greensboro, every fifth hour")
-celsius = np.linspace(-20, 40, 61)
-for humidity, color in ((0, RED), (100, BLUE)):
-    label = f"{humidity} % humidity, {year.pressure_hpa.mean():.0f} hPa"
-    axes.plot(celsius, air_density(celsius, humidity, year.pressure_hpa.mean()), color=color, label=label)
-axes.set(xlabel="temperature [°C]", ylabel="density of the air [kg/m³]", xlim=(-20, 40))
-axes.legend(fontsize=8, markerscale=3)
-axes.grid(alpha=0.3)
-plot.finished(figure)
+# %% tags=["figure"]
+celsius, pressure = np.linspace(-20, 40, 61), year.pressure_hpa.mean()
+plot.lines(
+    celsius,
+    {f"{h} % humidity, {pressure:.0f} hPa": air_density(celsius, h, pressure) for h in (0, 100)},
+    "temperature [°C]",
+    "density of the air [kg/m³]",
+    points={"an hour at Greensboro": np.column_stack([year.temperature_c, density])[::5]},
+)
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -139,20 +136,17 @@ for payload in (0.25, 0.6, 1.0):
     print(f"as heavy as a load of {payload:.2f} kg: {rate / 1000:5.1f} metres of rain an hour")
 assert 0.25 * GRAVITY / rain_force(100, uav.rain_area) > 98
 
-# %%
+# %% tags=["figure"]
 rates = np.geomspace(1, 30_000, 50)
-figure, axes = plt.subplots(figsize=(6.4, 3.8), dpi=plot.DPI, layout="constrained")
-for e, color, style in ((0.0, BLUE, "-"), (1.0, RED, "--")):
-    force = rain_force(rates, uav.rain_area, restitution=e)
-    axes.loglog(rates, force, style, color=color, label=f"rain on 0.1 m², drops {'bounce' if e else 'stick'}")
-for payload in (0.25, 1.0):
-    axes.axhline(payload * GRAVITY, color="0.4", linewidth=1)
-    axes.text(1.2, 1.1 * payload * GRAVITY, f"weight of {payload:g} kg", fontsize=8, color="0.3")
-axes.axvspan(50, 300, color=ORANGE, alpha=0.3, label="cloudburst, 50 to 300 mm/h")
-axes.set(xlabel="rain [mm/h]", ylabel="force [N]", xlim=(1, 30_000))
-axes.legend(fontsize=8, loc="lower right")
-axes.grid(alpha=0.3)
-plot.finished(figure)
+plot.lines(
+    rates,
+    {f"drops {does}": rain_force(rates, uav.rain_area, restitution=e) for does, e in (("stick", 0.0), ("bounce", 1.0))},
+    "rain [mm/h]",
+    "force of the rain on 0.1 m² [N]",
+    limits={f"weight of {payload:g} kg": payload * GRAVITY for payload in (0.25, 1.0)},
+    places={"cloudburst, 50 to 300 mm/h": (50, 300)},
+    log="xy",
+)
 
 # %% [markdown]
 # Ten metres an hour for the lightest of them. A hundred times a cloudburst: that doesn't exist. Rain is dangerous to a
@@ -215,20 +209,16 @@ for wind, velocity in ((0, 10), (10, 0), (-10, 10), (10, 10), (-10, 0)):
 assert np.allclose(wind_drag((0, 0), (10, 0), 0.05, air_density=1.2), (-3.0, 0))
 assert np.allclose(wind_drag((0, 0), (10, 0), 0.05, air_density=1.2, as_printed=True), (0.3, 0))
 
-# %%
+# %% tags=["figure"]
 speeds = np.linspace(0, 20, 81)
 air = np.stack([speeds, np.zeros(81)], axis=1)
-figure, axes = plt.subplots(figsize=(6.4, 3.8), dpi=plot.DPI, layout="constrained")
-axes.plot(speeds, wind_drag(air, (0, 0), 0.05, air_density=1.2)[:, 0], color=BLUE, label="drag, Eq. 4")
-printed = wind_drag((0, 0), air, 0.05, air_density=1.2, as_printed=True)[:, 0]
-axes.plot(speeds, printed, "--", color=RED, label="as printed, REPARE Eq. 5 (no newtons)")
-axes.plot([10, 10], [0.3, 3.0], "o", color="black", markersize=4)
-axes.annotate("3.0", (10, 3.0), (9, 3.4))
-axes.annotate("0.3", (10, 0.3), (10, 0.6))
-axes.set(xlabel="speed through still air [m/s]", ylabel="force [N]", xlim=(0, 20), ylim=(0, 12.5))
-axes.legend(fontsize=8)
-axes.grid(alpha=0.3)
-plot.finished(figure)
+drag = {
+    "drag, Eq. 4": wind_drag(air, (0, 0), 0.05, air_density=1.2)[:, 0],
+    "as printed, REPARE Eq. 5 (no newtons)": wind_drag((0, 0), air, 0.05, air_density=1.2, as_printed=True)[:, 0],
+}
+marks = {"at 10 m/s": [(10, 3.0), (10, 0.3)]}
+notes = {"3.0": (10, 3.0), "0.3": (10, 0.3)}
+plot.lines(speeds, drag, "speed through still air [m/s]", "force [N]", points=marks, notes=notes)
 
 # %% [markdown]
 # At 10 m/s the printed form is ten times too small; it is right at 1 m/s only, by chance of the unit. To a UAV that
@@ -298,44 +288,30 @@ print(f"{noon.temperature_c:.1f} °C, from {noon.wind_from_deg:.0f}°: mean {noo
 # The paper writes $\vec V_d \le \vec V_\text{wMax} + \vec V_\text{uav}$, and vectors can't be compared. Eq. 6 is what
 # can. It has no solution where $W_\perp > V_\text{uav}$: no heading holds the course.
 
-# %%
+# %% tags=["figure"]
 wind, course = np.array([-3.0, -8.0]), np.array([1.0, 0.0])
 ground = reachable_ground_speed(uav.top_speed, wind, course) * course
 through_air = ground - wind
 assert np.isclose(np.linalg.norm(through_air), uav.top_speed)
-figure, axes = plt.subplots(figsize=(7.2, 4.0), dpi=plot.DPI, layout="constrained")
-for start, vector, color, label in (
-    ((0, 0), through_air, BLUE, f"through the air {np.linalg.norm(through_air):.1f} m/s: nose to the left"),
-    (through_air, wind, RED, f"wind {np.linalg.norm(wind):.1f} m/s"),
-    ((0, 0), ground, "black", f"over ground {np.linalg.norm(ground):.1f} m/s: the course"),
-):
-    end = np.add(start, vector)
-    axes.annotate(
-        "", end, start, arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 2.5, "shrinkA": 0, "shrinkB": 0}
-    )
-    axes.plot([], [], color=color, linewidth=2.5, label=label)
-axes.set(xlim=(-0.5, 18), ylim=(-1, 9.5), aspect="equal", xlabel="east [m/s]", ylabel="north [m/s]")
-axes.legend(fontsize=8, loc="upper left")
-axes.grid(alpha=0.3)
-plot.finished(figure)
+triangle = {
+    f"through the air {np.linalg.norm(through_air):.1f} m/s: nose to the left": ((0, 0), through_air),
+    f"wind {np.linalg.norm(wind):.1f} m/s": (through_air, ground),
+    f"over ground {np.linalg.norm(ground):.1f} m/s: the course": ((0, 0), ground),
+}
+plot.diagram("east [m/s]", "north [m/s]", arrows=triangle)
 
 # %% [markdown]
 # How much of 18 m/s is left, whichever way the wind blows?
 
-# %%
+# %% tags=["figure"]
 angles = np.linspace(0, 180, 181)
-figure, axes = plt.subplots(figsize=(6.4, 3.9), dpi=plot.DPI, layout="constrained")
-for speed, color, style in ((3, GREEN, "-."), (9, BLUE, "-"), (15, RED, "--")):
-    blowing = speed * np.stack([np.cos(np.radians(angles)), np.sin(np.radians(angles))], axis=1)
-    left = reachable_ground_speed(uav.top_speed, blowing, course)
-    axes.plot(angles, left, style, color=color, label=f"wind {speed} m/s")
-axes.axhline(uav.cruise_speed, color="0.4", linewidth=1)
-axes.text(2, uav.cruise_speed + 0.4, f"cruise speed {uav.cruise_speed:g} m/s", fontsize=8, color="0.3")
-axes.set(xlabel="wind from behind (0°), the side (90°), ahead (180°)", ylabel="reachable ground speed [m/s]")
-axes.set(xlim=(0, 180), xticks=range(0, 181, 45), ylim=(0, 35))
-axes.legend(fontsize=8)
-axes.grid(alpha=0.3)
-plot.finished(figure)
+blowing = np.stack([np.cos(np.radians(angles)), np.sin(np.radians(angles))], axis=1)
+left = {f"wind {speed} m/s": reachable_ground_speed(uav.top_speed, speed * blowing, course) for speed in (3, 9, 15)}
+cruise = {f"cruise speed\n{uav.cruise_speed:g} m/s": uav.cruise_speed}
+side = "wind from behind (0°), the side (90°), ahead (180°)"
+figure = plot.lines(angles, left, side, "reachable ground speed [m/s]", limits=cruise)
+figure.axes[0].set_xticks(range(0, 181, 45))
+figure
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -374,42 +350,32 @@ for name, length, deviation in zip(("along", "across", "vertical"), lengths, dev
     print(f"{name:<9} σ = {deviation:.2f} m/s, L = {length:5.1f} m, τ = {length / 8.0:4.1f} s")
 assert deviations[0] > deviations[2]
 
-# %%
+# %% tags=["figure"]
 step, seconds = 0.05, 120
 gusts = dryden_gusts(seconds, step, **hover, rng=1)
 times = step * np.arange(len(gusts))
-figure, (above, below) = plt.subplots(2, 1, figsize=(7.2, 4.4), dpi=plot.DPI, layout="constrained", sharex=True)
-above.plot(times, 8.0 + gusts[:, 0], color=BLUE, label="wind with its gusts, along")
-above.axhline(8.0, color="0.4", linestyle="--", linewidth=1, label="mean wind")
-below.plot(times, gusts[:, 1], color=RED, label="gusts across")
-below.plot(times, gusts[:, 2], color=GREEN, linewidth=1, label="gusts up and down")
-below.set(xlabel="time [s]", xlim=(0, seconds), ylim=(-3.5, 3.5))
-for axes in (above, below):
-    axes.set(ylabel="speed [m/s]")
-    axes.legend(fontsize=8, ncols=2, loc="lower right")
-    axes.grid(alpha=0.3)
-plot.finished(figure)
+figure, (above, below) = plot.new_panels(2, 1, width=7.2, height=4.8, share="x")
+wind = {"wind with its gusts, along": 8.0 + gusts[:, 0]}
+sideways = {"gusts across": gusts[:, 1], "gusts up and down": gusts[:, 2]}
+plot.lines(times, wind, "time [s]", "speed [m/s]", limits={"mean wind": 8.0}, axes=above)
+plot.lines(times, sideways, "time [s]", "speed [m/s]", axes=below)
 
 # %% [markdown]
 # Are these the right gusts? Their spectrum must be Eq. 7. Ten hours of them, cut into pieces of 102 s whose spectra are
 # averaged (Welch's method):
 
-# %%
+# %% tags=["figure"]
 from scipy.signal import welch
 
 long_run = dryden_gusts(36_000, step, **hover, rng=2)
 hertz, estimate = welch(long_run, 1 / step, nperseg=2048, axis=0)
 omega = 2 * np.pi * hertz[1:]
 model = dryden_spectrum(omega, **hover)
-figure, all_axes = plt.subplots(1, 3, figsize=(8.4, 3.2), dpi=plot.DPI, layout="constrained", sharey=True)
-for axes, name, found, wanted in zip(all_axes, ("along", "across", "vertical"), estimate[1:].T, model.T, strict=True):
-    axes.loglog(omega, found / (2 * np.pi), color=ORANGE, linewidth=3, label="of the gusts (Welch)")
-    axes.loglog(omega, wanted, color="black", linewidth=1, label="Eq. 7")
-    axes.set(xlabel="angular frequency [rad/s]", title=name)
-    axes.grid(alpha=0.3)
-all_axes[0].set(ylabel="density [m²/s² per rad/s]")
-all_axes[0].legend(fontsize=8)
-plot.finished(figure)
+figure, panels = plot.new_panels(1, 3, width=9.6, height=3.8, share="y")
+for axes, name, found, wanted in zip(panels, ("along", "across", "vertical"), estimate[1:].T, model.T, strict=True):
+    spectra = {"of the gusts (Welch)": found / (2 * np.pi), "Eq. 7": wanted}
+    plot.lines(omega, spectra, "frequency [rad/s]", "density [m²/s² per rad/s]", log="xy", title=name, axes=axes)
+figure
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -467,21 +433,17 @@ for payload in (0.0, 0.25, 0.6, 1.0, 1.1):
     print(f"   {limits[payload]:5.1f} m/s")
 assert [round(limit, 1) for limit in limits.values()] == [13.0, 13.0, 13.0, 11.0, 0.0]
 
-# %%
+# %% tags=["figure"]
 payloads = np.linspace(0, 1.3, 651)
 dry = [uav.loaded(payload) for payload in payloads]
-figure, axes = plt.subplots(figsize=(7.2, 4.2), dpi=plot.DPI, layout="constrained")
 allowed = np.array([mean_wind_limit(loaded, ground_speed=5) for loaded in dry])
 held = np.array([wind_limit(loaded, safety_factor=1.0) for loaded in dry])
-axes.fill_between(payloads, 0, allowed, color=BLUE, alpha=0.25, label="may fly at 5 m/s over ground")
-axes.plot(payloads, held / 1.75, color=RED, label="its gusts use up all thrust (Eq. 9)")
-against = np.minimum(held, uav.top_speed) - 5
-axes.plot(payloads, against, "--", color=GREEN, label="head wind leaves 5 m/s (Eq. 10)")
-axes.axvline(heaviest, color="black", linestyle=":", label=f"lift margin is used up at {heaviest:.2f} kg (Eq. 3)")
-axes.set(xlabel="load [kg]", ylabel="mean wind [m/s]", xlim=(0, 1.3), ylim=(0, 16))
-axes.legend(fontsize=8, loc="lower left")
-axes.grid(alpha=0.3)
-plot.finished(figure)
+against = np.where(payloads <= heaviest, np.minimum(held, uav.top_speed) - 5, np.nan)
+bounds = {"its gusts use up all thrust (Eq. 9)": held / 1.75, "head wind leaves 5 m/s (Eq. 10)": against}
+flies = {"may fly at 5 m/s over ground": (0, allowed)}
+end = {f"lift margin is used up at {heaviest:.2f} kg (Eq. 3)": heaviest}
+plot.lines(payloads, bounds, "load [kg]", "mean wind [m/s]", bands=flies, places=end, y_range=(0, 16),
+           colors={"may fly at 5 m/s over ground": plot.SKY})  # fmt: skip
 
 # %% [markdown]
 # Three limits, one after the other. A light UAV is bound by its speed. From 0.6 kg on thrust is short, since a load
@@ -490,19 +452,14 @@ plot.finished(figure)
 #
 # And the rain? Here is the same map with rain upwards. Its contours stand nearly upright:
 
-# %%
+# %% tags=["figure"]
 rains = np.linspace(0, 300, 61)
 force = rain_force(rains, uav.rain_area)
 allowed = np.array([mean_wind_limit(loaded, force, ground_speed=5) for loaded in dry])
-figure, axes = plt.subplots(figsize=(7.2, 4.2), dpi=plot.DPI, layout="constrained")
-shown = axes.contourf(
-    payloads, rains, np.where(allowed > 0, allowed, np.nan).T, np.arange(9.5, 13.01, 0.5), cmap="cividis"
-)
-figure.colorbar(shown, ax=axes, label="mean wind in which it may fly [m/s]")
-grounded = axes.contourf(payloads, rains, (allowed == 0).T.astype(float), [0.5, 1.5], colors="0.85", hatches=["//"])
-axes.text(1.2, 150, "grounded\nby its load", ha="center", va="center", backgroundcolor="white")
-axes.set(xlabel="load [kg]", ylabel="rain [mm/h]")
-plot.finished(figure)
+shown = np.where(allowed > 0, allowed, np.nan)
+labels = "load [kg]", "rain [mm/h]", "mean wind in which it may fly [m/s]"
+grounded = {"grounded by its load": allowed == 0}
+plot.heat_map(payloads, rains, shown, *labels, contours=np.arange(10, 13, 0.5), hatched=grounded)
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -524,17 +481,12 @@ def envelope_at(wind, rain, load):
     """The envelope in this rain, and where this wind and this load lie in it."""
     force = rain_force(rain, uav.rain_area)
     loads = np.linspace(0, 1.3, 131)
-    limit = [mean_wind_limit(uav.loaded(payload), force, ground_speed=5) for payload in loads]
+    limit = np.array([mean_wind_limit(uav.loaded(payload), force, ground_speed=5) for payload in loads])
     reasons = grounded_by(uav.loaded(load), Weather(forecast_wind=wind, rain_mm_per_h=rain), ground_speed=5)
-    figure, axes = plt.subplots(figsize=(7.2, 3.8), dpi=plot.DPI, layout="constrained")
-    axes.fill_between(loads, 0, limit, color=BLUE, alpha=0.25, label=f"may fly in {rain:g} mm/h of rain")
-    style = {"marker": "X", "color": RED} if reasons else {"marker": "o", "color": BLUE}
-    axes.plot(load, wind, linestyle="", markersize=12, label="grounded" if reasons else "may fly", **style)
-    axes.set(xlabel="load [kg]", ylabel="mean wind [m/s]", xlim=(0, 1.3), ylim=(0, 20))
-    axes.set_title("\n".join(reasons) or "no limit is broken", fontsize=9)
-    axes.legend(fontsize=8, loc="lower left")
-    axes.grid(alpha=0.3)
-    return plot.finished(figure)
+    flies, mark = f"may fly in {rain:g} mm/h of rain", "this flight: " + ("grounded" if reasons else "may fly")
+    return plot.lines(loads, {}, "load [kg]", "mean wind [m/s]", bands={flies: (0, limit)}, points={mark: (load, wind)},
+                      y_range=(0, 20.5), colors={mark: RED if reasons else GREEN, flies: plot.SKY},
+                      title="\n".join(reasons) or "no limit is broken")  # fmt: skip
 
 
 envelope_at(wind=14.0, rain=50.0, load=0.6)
@@ -574,20 +526,17 @@ assert hours[0.0] == [1, 1, 104, 5, 17, 650]
 assert hours[1.0] == [8, 8, 104, 52, 52, 650]
 assert hours[1.1] == [8760] * 6
 
-# %%
+# %% tags=["figure"]
 speeds = np.arange(0, 17.5, 0.5)
-figure, axes = plt.subplots(figsize=(6.8, 4.0), dpi=plot.DPI, layout="constrained")
-for payload, color, style in ((0.0, BLUE, "-"), (1.0, ORANGE, "--"), (1.1, "black", ":")):
-    for height, width in ((10.0, 1.2), (60.0, 2.8)):
-        share = np.array([hours_grounded(payload, speed, height) for speed in speeds]) / len(year)
-        axes.semilogy(speeds, 100 * share, style, color=color, linewidth=width)
-    axes.plot([], [], style, color=color, label=f"load {payload:.2f} kg")
-for height, width in ((10.0, 1.2), (60.0, 2.8)):
-    axes.plot([], [], color="0.5", linewidth=width, label=f"{height:.0f} m above the ground")
-axes.set(xlabel="speed to hold over ground [m/s]", ylabel="hours grounded [%]", xlim=(0, 17), ylim=(0.005, 200))
-axes.legend(fontsize=8)
-axes.grid(alpha=0.3)
-plot.finished(figure)
+figure, panels = plot.new_panels(1, 2, width=9.0, height=4.0, share="y")
+for axes, height in zip(panels, (10.0, 60.0), strict=True):
+    share = {
+        f"load {payload:.2f} kg": np.array([100 * hours_grounded(payload, v, height) / len(year) for v in speeds])
+        for payload in (0.0, 1.0, 1.1)
+    }
+    plot.lines(speeds, share, "speed to hold over ground [m/s]", "hours grounded [%]", log="y", y_range=(0.005, 200),
+               title=f"{height:.0f} m above the ground", axes=axes)  # fmt: skip
+figure
 
 # %% [markdown]
 # Load hardly matters, until it matters entirely. At 10 m/s a load of 1 kg is grounded in as many hours as none at all.

@@ -20,7 +20,6 @@
 # %%
 import math
 
-import matplotlib.pyplot as plt
 import numpy as np
 from ipywidgets import Dropdown, FloatSlider, interact
 from scipy import stats
@@ -53,21 +52,18 @@ assert round(offsets.PAUTA_COVERAGE, 4) == 0.9973
 # This is REPARE Fig. 2: what lies in the green part is chance, what lies outside is taken for a *gross error*, or, for
 # a UAV, for a push it needn't survive.
 
-# %%
-model = OffsetModel(mean=0.0, sigma=1.0)
-x = np.linspace(-4.5, 4.5, 451)
-inside = np.abs(x) <= model.boundary()
-figure, axes = plot.new_figure(7.2, 3.4)
-axes.plot(x, model.density(x), color=BLACK)
-axes.fill_between(x, model.density(x), where=inside, color=GREEN, alpha=0.4, label="within 3σ: 99.73 %")
-axes.fill_between(x, model.density(x), where=~inside, color=ORANGE, label="beyond: 0.27 %")
-for k in (-3, 3):
-    axes.axvline(k, color="0.3", linestyle="--", linewidth=1)
-    axes.annotate("0.135 %", (k + np.sign(k) * 0.75, 0.03), ha="center", color=ORANGE)
-axes.set(xlabel="offset x on one axis [σ]", ylabel="density n(x) [1/σ]", ylim=(0, None), xlim=(-4.5, 4.5))
-axes.set_title("The Pauta criterion (REPARE Fig. 2)", fontsize=10)
-axes.legend(fontsize=8, loc="upper right")
-plot.finished(figure)
+# %% tags=["figure"]
+x = np.linspace(-4.5, 4.5, 901)
+density = OffsetModel(mean=0.0, sigma=1.0).density(x)
+within, beyond = "within 3σ: 99.73 %", "beyond: 0.135 % on each side"
+bands = {within: (0, np.where(np.abs(x) <= 3, density, np.nan)), beyond: (0, np.where(np.abs(x) >= 3, density, np.nan))}
+shown = {"places": {"−3σ": -3, "3σ": 3}, "bands": bands, "colors": {within: GREEN, beyond: ORANGE}}
+figure, panels = plot.new_panels(1, 2, width=9.0, height=3.7)
+tops = {"The Pauta criterion (REPARE Fig. 2)": 0.42, "enlarged, to see 0.27 %": 0.012}
+for axes, (title, top) in zip(panels, tops.items(), strict=True):
+    plot.lines(x, {"density": density}, "offset x on one axis [σ]", "density n(x) [1/σ]", y_range=(0, top), title=title,
+               axes=axes, **shown)  # fmt: skip
+figure
 
 # %% [markdown]
 # ## Several risk levels, and the distance to keep
@@ -90,21 +86,16 @@ for name, sigma in levels.items():
 distances = offsets.minimum_safe_distance(3 * np.array(list(levels.values())), uav_diameter=1.0)
 assert np.allclose(distances, [3.5, 4.5, 5.5])
 
-# %%
+# %% tags=["figure"]
 x = np.linspace(-6.5, 6.5, 651)
-figure, axes = plot.new_figure(7.2, 3.6)
-for (name, sigma), color, style in zip(levels.items(), (BLUE, BLACK, ORANGE), ("-", "--", "-."), strict=True):
-    level = OffsetModel(0.0, sigma)
-    axes.plot(x, level.density(x), style, color=color, label=f"{name}: σ = {sigma:.2f} m")
-    points = np.array([-1, 1]) * level.boundary()
-    axes.plot(points, level.density(points), "o", color=color, markersize=7)
-    axes.vlines(points, 0, 0.25 / sigma**2.5, color=color, linewidth=1)
-    axes.annotate(f"3σ = {points[1]:.0f} m", (points[1] - 0.1, 0.25 / sigma**2.5 + 0.004), color=color)
-axes.plot([], [], "o", color="0.4", label="safety discriminant points, 3σ")
-axes.set(xlabel="offset x on one axis [m]", ylabel="density n(x) [1/m]", ylim=(0, None))
-axes.set_title("Risk levels and what each has to survive (REPARE Fig. 3)", fontsize=10)
-axes.legend(fontsize=8)
-plot.finished(figure)
+models = {f"{name}: σ = {sigma:.2f} m": OffsetModel(0.0, sigma) for name, sigma in levels.items()}
+densities = {name: level.density(x) for name, level in models.items()}
+ends = {name: np.array([-1, 1]) * level.boundary() for name, level in models.items()}
+points = {name: np.column_stack([ends[name], level.density(ends[name])]) for name, level in models.items()}
+notes = {f"3σ = {points[name][1, 0]:.0f} m": points[name][1] for name in models}
+plot.lines(x, densities, "offset x on one axis [m]", "density n(x) [1/m]", points=points, notes=notes,
+           point_label="safety discriminant points, 3σ", title="Risk levels and what each has to survive (REPARE Fig. 3)",
+           colors=dict(zip(models, (BLUE, BLACK, ORANGE), strict=True)))  # fmt: skip
 
 # %% [markdown]
 # ## What the criterion was made for: gross errors
@@ -134,22 +125,17 @@ assert (kept == found.kept).all()
 assert not found.kept[200:].any()
 print(f"pauta_filter: {found.rounds} rounds, μ = {found.mean:.2f} m, σ = {found.sigma:.2f} m, removed {(~kept).sum()}")
 
-# %%
-figure, axes = plot.new_figure(7.2, 3.6)
-for number, (low, high) in enumerate(bounds, start=1):
-    axes.plot([low, high], [number, number], color=BLUE, linewidth=8, alpha=0.35, solid_capstyle="butt")
-axes.plot([], [], color=BLUE, linewidth=8, alpha=0.35, label="mean ± 3σ in this round")
-held = np.array([[low <= value <= high for low, high in bounds] for value in wrong])
-for value, survived in zip(wrong, held, strict=True):
-    last = int(np.argmin(survived)) + 1
-    axes.plot([value] * last, range(1, last + 1), "x:", color=ORANGE, linewidth=0.8)
-axes.plot([], [], "x:", color=ORANGE, linewidth=0.8, label="gross error, until it is removed")
-axes.plot(samples[:200], np.full(200, len(bounds) + 0.6), "|", color=BLACK, alpha=0.5, label="200 good samples")
-axes.set(xlabel="offset [m]", ylabel="round", yticks=range(1, len(bounds) + 1), xscale="symlog")
-axes.set_xticks([-100, -10, -1, 0, 1, 10, 100], ["−100", "−10", "−1", "0", "1", "10", "100"])
-axes.invert_yaxis()
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+# %% tags=["figure"]
+rounds, means, reach = np.arange(1, len(bounds) + 1), np.mean(bounds, axis=1), np.diff(bounds)[:, 0] / 2
+away = np.abs(samples - means[:, None])  # of each sample in each round
+removed = np.cumsum(away > reach[:, None], axis=0) - (away > reach[:, None]) > 0  # in a round before
+away[removed] = np.nan
+parts = {"gross error, until it is removed": away[:, 200:], "good sample": away[:, :200]}
+points = {name: np.column_stack([np.repeat(rounds, part.shape[1]), part.ravel()]) for name, part in parts.items()}
+limit = {"3σ in this round: what lies above is removed": reach}
+figure = plot.lines(rounds, limit, "round", "distance from the mean [m]", points=points, log="y", y_range=(0.01, 150))
+figure.axes[0].set_xticks(rounds)
+figure
 
 # %% [markdown]
 # In the first round the largest errors hide the others. Two warnings. The filter looks for what is far from the rest,
@@ -198,29 +184,18 @@ for dimensions in (1, 2, 3):
 assert math.isclose(offsets.coverage(3, 2), 1 - math.exp(-4.5))
 assert math.isclose(offsets.pauta_radius(2), math.sqrt(stats.chi2.ppf(offsets.PAUTA_COVERAGE, 2)), abs_tol=1e-12)
 
-# %%
-k = np.linspace(0, 5, 501)
-note = {"fontsize": 8, "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.5}}
-figure, axes = plot.new_figure(7.2, 3.8)
-for dimensions, color, style in ((1, BLUE, "-"), (2, BLACK, "--"), (3, ORANGE, "-.")):
-    beyond = 1 - offsets.coverage(k, dimensions)
-    axes.semilogy(k, 100 * beyond, style, color=color, label=f"{dimensions} D")
-    at_three = 100 * (1 - offsets.coverage(3, dimensions))
-    axes.plot([2.5, 3], [0.6 * at_three, at_three], color=color, linewidth=0.6)
-    axes.plot(3, at_three, "o", color=color)
-    axes.annotate(f"{at_three:.2f} %", (2.5, 0.7 * at_three), ha="right", va="top", color=color, **note)
-    radius = offsets.pauta_radius(dimensions)
-    axes.plot(radius, 0.27, "s", color=color)
-    axes.annotate(f"{radius:.2f}σ", (radius, 0.2), ha="center", va="top", color=color, **note)
-axes.axhline(0.27, color="0.3", linestyle=":", label="Pauta: 0.27 %")
-axes.set(xlabel="radius k [σ]", ylabel="chance to be beyond [%]", ylim=(0.01, 110), xlim=(0, 5))
-axes.set_yticks([0.01, 0.1, 1, 10, 100], ["0.01", "0.1", "1", "10", "100"])
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8, loc="lower left")
-plot.finished(figure)
+# %% tags=["figure"]
+k, dimensions = np.linspace(0, 5, 501), (1, 2, 3)
+beyond = {f"{d} D": 100 * (1 - offsets.coverage(k, d)) for d in dimensions}
+outside = [(3, 100 * (1 - offsets.coverage(3, d))) for d in dimensions]
+radii = [(offsets.pauta_radius(d), 0.27) for d in dimensions]
+points = {"what 3σ leaves outside": outside, "radius for 0.27 %": radii}
+notes = {f"{at[1]:.2f} %": at for at in outside} | {f"{at[0]:.2f}σ": at for at in radii}
+plot.lines(k, beyond, "radius k [σ]", "chance to be beyond [%]", points=points, notes=notes, limits={"Pauta: 0.27 %": 0.27},
+           log="y", y_range=(0.01, 110), colors={"1 D": BLUE, "2 D": BLACK, "3 D": ORANGE})  # fmt: skip
 
 # %% [markdown]
-# Discs: what $3\sigma$ leaves outside. Squares: what radius the criterion's own 0.27 % needs. The same three standard
+# Discs: what $3\sigma$ leaves outside. Triangles: what radius the criterion's own 0.27 % needs. The same three standard
 # deviations leave out four times as much in the plane, and eleven times as much in space.
 #
 # Turn it yourself:
@@ -232,16 +207,13 @@ def turn(sigma=1.0, dimensions=2):
     radius = offsets.pauta_radius(dimensions)
     r = np.linspace(0, 9, 601)
     density = stats.chi(dimensions, scale=sigma).pdf(r)
-    figure, axes = plot.new_figure(7.2, 3.2)
-    axes.plot(r, density, color=BLACK, label=f"distance from the route, {dimensions} D")
-    axes.fill_between(r, density, where=r > 3 * sigma, color=ORANGE, label="beyond 3σ")
-    axes.axvline(3 * sigma, color=ORANGE, linestyle="--", label=f"3σ = {3 * sigma:.2f} m")
-    axes.axvline(radius * sigma, color=BLUE, label=f"99.73 % within {radius * sigma:.2f} m")
     keep = offsets.minimum_safe_distance(radius * sigma, uav_diameter=1.0)
-    axes.set(xlabel="distance from the route [m]", ylabel="density [1/m]", xlim=(0, 9), ylim=(0, None))
-    axes.set_title(f"3σ holds {offsets.coverage(3, dimensions):.2%}; D_min = {keep:.2f} m (body 1 m)", fontsize=10)
-    axes.legend(fontsize=8)
-    return plot.finished(figure)
+    places = {f"3σ = {3 * sigma:.2f} m": 3 * sigma, f"99.73 % within {radius * sigma:.2f} m": radius * sigma}
+    law = f"distance from the route, {dimensions} D"
+    return plot.lines(r, {law: density}, "distance from the route [m]", "density [1/m]", places=places,
+                      bands={"beyond 3σ": (0, np.where(r >= 3 * sigma, density, np.nan))},
+                      title=f"3σ holds {offsets.coverage(3, dimensions):.2%}; D_min = {keep:.2f} m (body 1 m)",
+                      colors={"beyond 3σ": ORANGE})  # fmt: skip
 
 
 turn()
@@ -279,23 +251,18 @@ assert calm.density((0, 0)) > 1
 assert math.isclose(joint.circle(), offsets.pauta_radius(2), rel_tol=1e-9)
 assert abs(1 - 3 / joint.circle() - 1 / 8) < 0.004
 
-# %%
-grid = np.stack(np.meshgrid(np.linspace(-4.5, 4.5, 226), np.linspace(-4.5, 4.5, 226)), axis=-1)
-figure, axes = plot.new_figure(6.6, 4.6)
-shades = axes.imshow(joint.density(grid), extent=(-4.5, 4.5, -4.5, 4.5), origin="lower", cmap="cividis")
-figure.colorbar(shades, ax=axes, label="density f [1/m²], σ = 1 m")
-shown = pushes[:5000]
-distance = np.hypot(*shown.T)
-for beyond, color in ((3, "white"), (joint.circle(), ORANGE)):
-    axes.plot(*shown[distance > beyond].T, ".", color=color, markersize=7)
+# %% tags=["figure"]
+grid = np.linspace(-4.5, 4.5, 91)
 angle = np.linspace(0, 2 * np.pi, 181)
-for radius, style, text in ((3, "--", "3σ: 98.89 %"), (joint.circle(), "-", "3.44σ: 99.73 %")):
-    axes.plot(radius * np.cos(angle), radius * np.sin(angle), style, color="white", linewidth=1.8, label=text)
-axes.set(xlabel="horizontal offset [m]", ylabel="vertical offset [m]", xlim=(-4.5, 4.5), ylim=(-4.5, 4.5))
-axes.set_aspect("equal")
-axes.set_title(f"REPARE Fig. 18: {np.sum(distance > 3)} of 5000 offsets beyond 3σ (orange: 3.44σ)", fontsize=10)
-axes.legend(fontsize=8, loc="upper left", facecolor="0.35", labelcolor="white")
-plot.finished(figure)
+circle = np.column_stack([np.cos(angle), np.sin(angle)])
+shown, distance = pushes[:5000], np.hypot(*pushes[:5000].T)
+circles = {"the paper's circle, 3σ: 98.89 %": 3 * circle, "circle of 3.44σ: 99.73 %": joint.circle() * circle}
+far = distance > joint.circle()
+beyond = {"beyond 3σ": shown[(distance > 3) & ~far], "beyond 3.44σ, too": shown[far]}
+plot.heat_map(grid, grid, joint.density(np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1)),
+              "horizontal offset [m]", "vertical offset [m]", "density f [1/m²], σ = 1 m", paths=circles, points=beyond,
+              equal=True, title=f"REPARE Fig. 18: {np.sum(distance > 3)} of 5000 offsets beyond 3σ",
+              colors=dict(zip([*circles, *beyond], (ORANGE, BLUE, YELLOW, PINK), strict=True)))  # fmt: skip
 
 # %% [markdown]
 # The axes need neither the same $\sigma$ nor independence: wind that pushes sideways also tilts the UAV, and a tilted
@@ -317,17 +284,15 @@ print(
 )
 assert abs(np.mean(np.hypot(*pushes.T) <= tilted.circle()) - offsets.PAUTA_COVERAGE) < 5e-4
 
-# %%
-figure, axes = plot.new_figure(6.8, 4.2)
-axes.plot(*pushes[:3000].T, ".", color="0.6", markersize=2, label="drawn offsets")
-axes.plot(*tilted.ellipse().T, color=BLUE, label="ellipse, 99.73 %")
-axes.plot(*tilted.ellipse(offsets.coverage(3, 2)).T, "--", color=BLUE, label="ellipse of 3σ, 98.89 %")
-axes.plot(*(tilted.circle() * np.array([np.cos(angle), np.sin(angle)])), color=ORANGE, label="circle, 99.73 %")
-axes.plot(0, 0, "+", color=BLACK, markersize=12, label="route")
-axes.plot(*tilted.mean, "x", color=BLACK, label="mean offset")
-axes.set(xlabel="horizontal offset [m]", ylabel="vertical offset [m]", aspect="equal")
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+# %% tags=["figure"]
+outlines = {
+    "ellipse, 99.73 %": tilted.ellipse(),
+    "ellipse of 3σ, 98.89 %": tilted.ellipse(offsets.coverage(3, 2)),
+    "circle, 99.73 %": tilted.circle() * circle,
+}
+points = {"route": (0, 0), "mean offset": tilted.mean, "a drawn offset": pushes[:1000]}
+colors = dict(zip([*outlines, *points], (BLUE, PINK, ORANGE, BLACK, GREEN, "0.5"), strict=True))
+plot.diagram("horizontal offset [m]", "vertical offset [m]", paths=outlines, points=points, colors=colors)
 
 # %% [markdown]
 # ## A distance is not an offset
@@ -356,19 +321,18 @@ for mean_length in (0.0, 1.0, 2.0):
 assert math.isclose(law.mean(), math.sqrt(math.pi / 2))
 assert math.isclose(law.ppf(offsets.PAUTA_COVERAGE), offsets.pauta_radius(2))
 
-# %%
+# %% tags=["figure"]
 r = np.linspace(0, 6.5, 651)
-figure, axes = plot.new_figure(7.2, 3.6)
 drawn = np.hypot(*np.random.default_rng(8).standard_normal((2, 100_000)))
-axes.hist(drawn, bins=np.arange(0, 6.6, 0.1), density=True, color="0.85", label="100,000 drawn magnitudes")
-axes.plot(r, law.pdf(r), color=BLUE, label="Rayleigh (Eq. 8)")
-axes.plot(r, OffsetModel(law.mean(), law.std()).density(r), "--", color=ORANGE, label="Gaussian, same mean and σ")
-axes.plot(r, offsets.magnitude(1.0, 2.0).pdf(r), "-.", color=BLACK, label="Rice: mean offset 2σ")
-axes.axvline(rule, color=ORANGE, linestyle=":", label=f"mean + 3 deviations, {rule:.2f}σ")
-axes.axvline(law.ppf(offsets.PAUTA_COVERAGE), color=BLUE, linestyle=":", label="99.73 % (Rayleigh), 3.44σ")
-axes.set(xlabel="distance from the route in the plan [σ]", ylabel="density [1/σ]", xlim=(0, 6.5))
-axes.legend(fontsize=8)
-plot.finished(figure)
+heights = np.histogram(drawn, bins=np.arange(0, 6.65, 0.1), density=True)[0]
+densities = {
+    "Rayleigh (Eq. 8)": law.pdf(r),
+    "Gaussian, same mean and σ": OffsetModel(law.mean(), law.std()).density(r),
+    "Rice: mean offset 2σ": offsets.magnitude(1.0, 2.0).pdf(r),
+}
+gaussian_end, end = f"Gaussian: mean + 3 deviations, {rule:.2f}σ", "Rayleigh: 99.73 %, 3.44σ"
+plot.lines(r, densities, "distance from the route in the plan [σ]", "density [1/σ]", places={gaussian_end: rule, end: law.ppf(offsets.PAUTA_COVERAGE)},
+           bands={"100,000 drawn magnitudes": (0, heights[(10 * r).astype(int)])})  # fmt: skip
 
 # %% [markdown]
 # ## A force that isn't Gaussian
@@ -403,27 +367,21 @@ print(f"a million drawn, I = 0.3: skewness {stats.skew(drawn):.2f}, beyond 3σ {
 assert math.isclose(city.skewness, (24 * 0.3**4 + 8 * 0.3**6) / (4 * 0.3**2 + 2 * 0.3**4) ** 1.5, rel_tol=1e-3)
 assert math.isclose(city.beyond(3.0) / gaussian.beyond(3.0), 6.54, abs_tol=0.01)
 
-# %%
+# %% tags=["figure"]
 x = np.linspace(-4, 6, 501)
-figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.4), dpi=plot.DPI, layout="constrained")
-for law, color, style, text in ((gaussian, BLUE, "--", "Gaussian"), (city, ORANGE, "-", "force ∝ |V|V, I = 0.3")):
-    left.plot(x, law.density(x), style, color=color, label=text)
-    right.semilogy(x[x >= 0], 100 * law.beyond(x[x >= 0]), style, color=color, label=text)
-    right.plot(law.boundary(), 100 * law.beyond(law.boundary()), "s", color=color)
-    right.plot(3, 100 * law.beyond(3), "o", color=color)
-left.axvline(3, color="0.3", linestyle=":")
-right.axvline(3, color="0.3", linestyle=":", label="3σ")
-right.set(ylim=(1e-3, 100), xlabel="offset downwind x − μ [σ]", ylabel="chance of more than x [%]")
-left.set(xlabel="offset downwind x − μ [σ]", ylabel="density [1/σ]", ylim=(0, None))
-right.set_yticks([0.001, 0.01, 0.1, 1, 10, 100], ["0.001", "0.01", "0.1", "1", "10", "100"])
-for axes in (left, right):
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8)
-plot.finished(figure)
+laws = {"Gaussian": gaussian, "force ∝ |V|V, I = 0.3": city}
+reach = "offset downwind x − μ [σ]"
+three = {"at 3σ": [(3, 100 * law.beyond(3)) for law in laws.values()]}
+same = {"where 0.135 % are beyond": [(law.boundary(), 100 * law.beyond(law.boundary())) for law in laws.values()]}
+figure, (left, right) = plot.new_panels(1, 2, width=9.0, height=3.7)
+plot.lines(x, {name: law.density(x) for name, law in laws.items()}, reach, "density [1/σ]", places={"3σ": 3}, axes=left)
+x = x[x >= 0]
+plot.lines(x, {name: 100 * law.beyond(x) for name, law in laws.items()}, reach, "chance of more than x [%]",
+           points=three | same, places={"3σ": 3}, log="y", y_range=(1e-3, 100), axes=right)  # fmt: skip
 
 # %% [markdown]
 # Same mean, same $\sigma$, and yet downwind the chance beyond $3\sigma$ (discs) is 6.5 times as large; the chance that
-# $3\sigma$ has for a Gaussian is reached only at $4.1\sigma$ (squares). Upwind it is the other way round: a lull can't
+# $3\sigma$ has for a Gaussian is reached only at $4.1\sigma$ (triangles). Upwind it is the other way round: a lull can't
 # take away more than all the wind, hence the edge on the left. Eq. 9 is the worst case, an offset that follows the
 # force at once; a sluggish UAV averages over several gusts, and their sum is nearer to a Gaussian. With samples one can
 # look: `SkewedOffset.fit` finds $I$ from their skewness.
@@ -437,19 +395,15 @@ plot.finished(figure)
 # $$ \ddot x + 2\omega_n \dot x + \omega_n^2 x = \text{noise}, \qquad
 #    R(\tau) = \sigma^2 (1 + \omega_n|\tau|)\, e^{-\omega_n|\tau|}. \tag{11} $$
 
-# %%
+# %% tags=["figure"]
 time, paths = offsets.offset_paths(1.0, 60.0, 40, count=3, natural_frequency=1.0)
 _, rough = offsets.offset_paths(1.0, 60.0, 3, count=1, natural_frequency=1.0, rough=True)
-figure, axes = plot.new_figure(7.6, 3.6)
-for path, color in zip(paths, (BLUE, BLACK, PINK), strict=True):
-    axes.plot(time, path, color=color, linewidth=1.3)
-axes.plot([], [], color=BLUE, label="three flights (Eq. 11)")
-axes.plot(time, rough[0], color="0.75", linewidth=0.8, zorder=0, label="without a speed of its own")
-axes.axhline(3, color=ORANGE, linestyle="--", label="3σ towards the wall")
-axes.set(xlabel="time [s]", ylabel="offset towards the wall [σ]", xlim=(0, 60), ylim=(-5.2, 3.6))
-axes.legend(fontsize=8, loc="lower left", ncols=3)
 assert paths.shape == (3, 1201)
-plot.finished(figure)
+without = "Ornstein–Uhlenbeck, see below"
+flights = {without: rough[0]} | {f"flight {n} (Eq. 11)": path for n, path in enumerate(paths, start=1)}
+_, axes = plot.new_figure(7.2, 3.4)
+plot.lines(time, flights, "time [s]", "offset towards the wall [σ]", limits={"3σ towards\nthe wall": 3}, axes=axes,
+           colors=dict(zip(flights, ("0.75", BLUE, BLACK, PINK), strict=True)))  # fmt: skip
 
 # %% [markdown]
 # How often does it cross a level $u$ upwards? In the short time $dt$ those cross that are below it by less than
@@ -515,26 +469,14 @@ for name, seconds in durations.items():
     print(f"{name:>6} beside a wall: at 3σ {at_three:6.2%} collide; for 0.27 % it takes {needed[name]:.2f}σ")
 assert needed["10 min"] > 4.5
 
-# %%
+# %% tags=["figure"]
 seconds = np.geomspace(0.3, 1800, 200)
-figure, axes = plot.new_figure(7.2, 3.8)
-for k, color, style in (
-    (3.0, ORANGE, "-"),
-    (offsets.pauta_radius(2), BLUE, "--"),
-    (4.0, BLACK, "-."),
-    (5.0, PINK, ":"),
-):
-    chance = offsets.collision_probability(k, 1.0, seconds)
-    axes.loglog(seconds, 100 * chance, style, color=color, linewidth=2, label=f"wall at {k:.3g}σ")
-axes.plot(8, 100 * measured, "o", color=ORANGE, markersize=8, label="flown, wall at 3σ")
-axes.axhline(0.27, color="0.3", linewidth=1, label="Pauta: 0.27 %")
-axes.set(xlabel="time beside the wall [s]", ylabel="chance to touch it [%]", ylim=(1e-3, 110))
-axes.set_yticks([0.001, 0.01, 0.1, 1, 10, 100], ["0.001", "0.01", "0.1", "1", "10", "100"])
-axes.set_xticks([1, 8, 60, 600, 1800], ["1", "8", "60", "600", "1800"])
-axes.minorticks_off()
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+walls = {f"wall at {k:.3g}σ": k for k in (3.0, offsets.pauta_radius(2), 4.0, 5.0)}
+chances = {name: 100 * offsets.collision_probability(k, 1.0, seconds) for name, k in walls.items()}
+colors = dict(zip([*chances, "flown, wall at 3σ"], (ORANGE, BLUE, BLACK, PINK, ORANGE), strict=True))
+plot.lines(seconds, chances, "time beside the wall [s]", "chance to touch it [%]", log="xy", y_range=(1e-3, 110),
+           points={"flown, wall at 3σ": (8, 100 * measured)}, limits={"Pauta: 0.27 %": 0.27},
+           places={"8 s": 8, "1 min": 60, "10 min": 600, "30 min": 1800}, colors=colors)  # fmt: skip
 
 # %% [markdown]
 # ## What it means for the distance to keep
@@ -586,25 +528,18 @@ for side, normal in {"west": (-1, 0), "south": (0, -1), "east": (1, 0)}.items():
     print(f"{side:>5} of a building: at 3.5 m {chances[0]:6.2%}, at D_min = {widened:.1f} m {chances[1]:.2%}")
     assert chances[1] < 0.016
 
-# %%
-x, y = np.meshgrid(np.linspace(-14, 14, 281), np.linspace(-10, 10, 201))
-away = np.stack([x - np.clip(x, -6, 6), y - np.clip(y, -3, 3)], axis=-1)  # from the nearest point of a building
-clearance = np.linalg.norm(away, axis=-1)
-outside = clearance > 0
-zone = np.zeros_like(clearance)
-zone[outside] = offsets.minimum_safe_distance(3.0, 1.0, mean_offset=(2.0, 0.0), normal=away[outside])
-figure, axes = plot.new_figure(7.2, 4.2)
-axes.add_patch(plt.Rectangle((-6, -3), 12, 6, color="0.35", label="building"))
-axes.contourf(x, y, np.where(outside, clearance - zone, np.nan), levels=[-9, 0], colors=[ORANGE], alpha=0.3)
-axes.contour(x, y, np.where(outside, clearance - zone, np.nan), levels=[0], colors=[ORANGE], linewidths=2)
-axes.contour(x, y, clearance, levels=[3.5], colors=[BLUE], linestyles="--", linewidths=2)
-axes.plot([], [], color=ORANGE, linewidth=2, label="widened towards the wind (Eq. 14)")
-axes.plot([], [], "--", color=BLUE, linewidth=2, label="3.5 m all around")
-axes.annotate("", (-10.5, 8), (-13, 8), arrowprops={"arrowstyle": "-|>", "color": BLACK, "linewidth": 2})
-axes.annotate("mean offset 2 m", (-10.2, 8), va="center")
-axes.set(xlabel="x, east [m]", ylabel="y, north [m]", aspect="equal")
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+# %% tags=["figure"]
+corners = np.array([(6, 3), (-6, 3), (-6, -3), (6, -3)])
+quarters = np.radians(np.linspace(np.arange(0, 360, 90), np.arange(90, 450, 90), 61).T)  # around each corner
+normal = np.stack([np.cos(quarters), np.sin(quarters)], axis=-1)
+zones = {}
+for name, mean_offset in {"widened towards the wind (Eq. 14)": (2.0, 0.0), "3.5 m all around": (0.0, 0.0)}.items():
+    keep = offsets.minimum_safe_distance(3.0, 1.0, mean_offset=mean_offset, normal=normal)
+    outline = (corners[:, None] + keep[..., None] * normal).reshape(-1, 2)
+    zones[name] = np.vstack([outline, outline[:1]])
+wind = {"mean offset 2 m": [(-13, 8), (-11, 8)]}
+plot.diagram("x, east [m]", "y, north [m]", paths=zones, areas={"building": corners}, arrows=wind,
+             colors={"building": "0.35"})  # fmt: skip
 
 # %% [markdown]
 # ## What the paper says, what we find

@@ -12,6 +12,7 @@ from unittest import mock
 
 import numpy as np
 from matplotlib import colors
+from matplotlib.figure import Figure
 from things import (
     BREEZE,
     CALM,
@@ -191,6 +192,28 @@ def swarmed(**more):
 
 def drawn(**more):
     return {"city": TOWN, "routes": (LINE, {"curve": CURVE}), **more}
+
+
+def panel():
+    """To draw on, a new one each time."""
+    return Figure(layout="constrained").subplots()
+
+
+def marked(**more):
+    """What diagrams and maps have in common."""
+    return {
+        "paths": {"way": [[1.0, 1.0], [5.0, 6.0]]}, "points": {"start": [[1.0, 1.0]]}, "notes": {"here": (2.0, 2.0)},
+        "title": "map", "colors": {"way": "#0072B2"}, "axes": panel(), **more,
+    }  # fmt: skip
+
+
+def framed(**more):
+    """What lines and points have in common."""
+    return {
+        "x_label": "x [m]", "y_label": "y [m]", "limits": {"most": 8.0, "usual": (1.0, 2.0)}, "places": {"here": 2.0},
+        "notes": {"a note": (2.0, 4.0)}, "log": "y", "x_range": (1.0, 4.0), "y_range": (0.25, 16.0), "title": "lines",
+        "colors": {"a": "#0072B2"}, "axes": panel(), **more,
+    }  # fmt: skip
 
 
 def flown(**more):
@@ -499,6 +522,9 @@ CALLS = {
         refinement=0.25, settings={"swarm": 10, "antenna": 0.25}, **weighed(),
     ),
     # plot
+    "plot.area_map": lambda: {
+        "city": TOWN, "areas": {"built": TOWN.occupied[:, :, 2]}, **marked(), "area": (0.0, 12.0, 0.0, 12.0),
+    },
     "plot.bars": lambda: {"values": {"a": 1.0, "b": 2.0}, "label": "length [m]", "title": "bars"},
     "plot.convergence": lambda: {"comparison": COMPARISON, "by": "evaluations", "until": 5},
     "plot.corner": lambda: {
@@ -506,6 +532,10 @@ CALLS = {
     },
     "plot.crash_rates": lambda: {"rates": {"calm": {"A*": Rate(1.0, 0.5, 2.0)}}, "least": 0.0625},
     "plot.curve_profile": lambda: {"curves": (CURVE,), "speed": 5.0, "cell": 1.0, "bank": 0.5, "max_pitch": 1.0},
+    "plot.diagram": lambda: {
+        "x_label": "x [m]", "y_label": "y [m]", "areas": {"wall": SQUARE}, "arrows": {"wind": [[1.0, 2.0], [3.0, 4.0]]},
+        "x_range": (0.0, 12.0), "y_range": (0.0, 12.0), **marked(),
+    },
     "plot.expansions": lambda: {"city": TOWN, "routes": (SEARCHED,)},
     "plot.field": lambda: {
         "city": TOWN, "height": 2.5, "goal": GOAL, "routes": (LINE,), "area": (0.0, 12.0, 0.0, 12.0), "spacing": 3.0,
@@ -514,14 +544,41 @@ CALLS = {
     "plot.front": lambda: {"routes": [LINE, EXACT], "marked": (LINE,), "label": "risk [1/h]"},
     "plot.ground_risk": lambda: {"risk_map": RISK},
     "plot.ground_station": lambda: {"log": LOG},
+    "plot.heat_map": lambda: {
+        "x": np.arange(3.0), "y": np.arange(4.0), "values": np.arange(12.0).reshape(3, 4), "x_label": "x [m]",
+        "y_label": "y [m]", "label": "height [m]", "contours": [2.0, 5.0], "hatched": {"low": np.eye(3, 4, dtype=bool)},
+        "norm": colors.Normalize(0.0, 12.0), "equal": True, **marked(),
+    },
     "plot.in_flight": lambda: {"flights": {"a": FLIGHT}, "limits": {"most": 28.0}},
+    "plot.intervals": lambda: {
+        "values": {"A*": {"town": [1.0, 0.5, 2.0], "field": 3.0}}, "label": "length [m]", "level": "95 %", "digits": 1,
+        "log": True, "places": {"least": 1.5}, "x_range": (0.25, 8.0), "title": "rows", "colors": {"A*": "#0072B2"},
+        "axes": panel(),
+    },
     "plot.layers": lambda: {"risk_map": RISK},
+    "plot.lines": lambda: {
+        "x": np.arange(1.0, 5.0), "series": {"a": [1.0, 4.0, 2.0, 8.0]}, "point_label": "flown", "band_label": "95 %",
+        "bands": {"a": ([0.5, 2.0, 1.0, 4.0], 9.0)}, "steps": True,
+        "points": {"a": [[1.0, 2.0], [3.0, 4.0]]}, **framed(),
+    },
+    "plot.matrix": lambda: {
+        "values": [[1.0, 2.0], [3.0, 4.0]], "rows": ["a", "b"], "columns": ["c", "d"], "row_label": "true",
+        "column_label": "said", "label": "share", "shares": True, "digits": 1, "norm": colors.Normalize(0.0, 1.0),
+        "title": "counts", "axes": panel(),
+    },
+    "plot.new_panels": lambda: {"rows": 1, "columns": 2, "width": 4.0, "height": 3.0, "share": "y"},
     "plot.plan": drawn,
+    "plot.points": lambda: {"groups": {"a": [[1.0, 2.0], [3.0, 4.0]]}, **framed()},
     "plot.profile": lambda: drawn(safe_distance=0.5),
     "plot.risk": lambda: {"risk_map": RISK, "height": 2.5, "routes": (LINE,)},
     "plot.risk_norm": lambda: {"risk_map": RISK},
     "plot.styles": lambda: {"names": ["A*", "mine"], "colors": {"mine": "#009E73"}},
     "plot.route_colors": lambda: {"count": 3},
+    "plot.runs": lambda: {
+        "values": {"PSO": {"town": [1.0, 0.5, 2.0]}}, "label": "gap [%]", "digits": 1, "log": True,
+        "places": {"least": 1.5}, "x_range": (0.25, 8.0), "title": "rows", "colors": {"PSO": "#0072B2"},
+        "axes": panel(),
+    },
     "plot.safety_domain": lambda: {"samples": SAMPLES, "domains": {"best": DOMAIN}},
     "plot.section": lambda: {
         "city": TOWN, "height": 2.5, "values": PRICES, "routes": (LINE,), "label": "price [1]",
@@ -529,6 +586,10 @@ CALLS = {
     },
     "plot.tracks": lambda: {
         "city": TOWN, "flights": {"a": [FLIGHT]}, "routes": {"a": LINE}, "area": (0.0, 12.0, 0.0, 12.0),
+    },
+    "plot.value_map": lambda: {
+        "city": TOWN, "values": np.arange(float(TOWN.occupied[:, :, 0].size)).reshape(TOWN.shape[:2]),
+        "label": "height [m]", **marked(), "area": (0.0, 12.0, 0.0, 12.0), "norm": colors.Normalize(0.0, 200.0),
     },
     # prediction
     "prediction.OffsetPredictor": lambda: {

@@ -30,7 +30,10 @@ STANDS_FOR = {
 }  # fmt: skip
 """What else an annotation takes; a flight has a route, as a curve has."""
 
-FREE_TEXT = {"name", "title", "label", "unit", "reason", "planner", "advice", "what", "priced", "color", "colors"}
+FREE_TEXT = {
+    "name", "title", "label", "unit", "reason", "planner", "advice", "what", "priced", "color", "colors", "x_label",
+    "y_label", "row_label", "column_label", "point_label", "band_label", "level",
+}  # fmt: skip
 """Texts that may say anything, or that somebody else looks at."""
 
 ROWS = {
@@ -97,12 +100,12 @@ MAY_BE_INFINITE = {
 MAY_BE_NAN = {
     "route.Route.cost",  # none is known
     "city.Terrain.from_raster.heights", "city.Terrain.from_grid.grid", "risk.raster_layer.values",  # no data
-    "plot.section.values",  # isn't drawn
+    "plot.section.values", "plot.value_map.values", "plot.heat_map.values", "plot.matrix.values",  # isn't drawn
     "city.City.cell_of.points", "city.City.inside.points", "city.City.is_free.points",  # lies outside of every map
 }  # fmt: skip
 
 MAY_BE_MASKED = {
-    "city.Terrain.from_raster.heights", "risk.raster_layer.values", "plot.section.values",
+    "city.Terrain.from_raster.heights", "risk.raster_layer.values", "plot.section.values", "plot.value_map.values",
 }  # fmt: skip
 """Where masked means the same as NaN."""
 
@@ -139,6 +142,9 @@ RIGHTFUL = {
     "optimizers.bas.start": {"deeper"},  # one point as a row of several
     "optimizers.pso.start": {"deeper"},
     "optimizers.pso_bas.start": {"deeper"},
+    **{f"plot.{kind}.x_range": {"None inside"} for kind in ("diagram", "intervals", "lines", "points", "runs")},
+    **{f"plot.{kind}.y_range": {"None inside"} for kind in ("diagram", "lines", "points")},  # ends by itself
+    "plot.heat_map.contours": {"too short"},
     "plot.bars.values": {"NaN inside"},  # has no bar, such as the clearance of a route that doesn't arrive
 }
 """Mistakes that are none, by function and parameter."""

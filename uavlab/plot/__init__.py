@@ -24,7 +24,12 @@ from uavlab.plot.colors import (
 )
 from uavlab.plot.curves import corner, curve_profile
 from uavlab.plot.flights import crash_rates, in_flight, safety_domain, tracks
+from uavlab.plot.grids import heat_map, matrix
 from uavlab.plot.maps import RISK_LABEL, expansions, field, ground_risk, layers, plan, risk, risk_norm, section
+from uavlab.plot.panels import new_panels
+from uavlab.plot.planes import area_map, diagram, value_map
+from uavlab.plot.rows import intervals, runs
+from uavlab.plot.series import lines, points
 from uavlab.plot.station import ground_station
 from uavlab.plot.style import (
     DPI,
@@ -50,11 +55,13 @@ __all__ = [
     "YELLOW",
     "Drawn",
     "Style",
+    "area_map",
     "bars",
     "convergence",
     "corner",
     "crash_rates",
     "curve_profile",
+    "diagram",
     "draw_map",
     "expansions",
     "field",
@@ -62,16 +69,24 @@ __all__ = [
     "front",
     "ground_risk",
     "ground_station",
+    "heat_map",
     "in_flight",
+    "intervals",
     "layers",
+    "lines",
+    "matrix",
     "new_figure",
+    "new_panels",
     "plan",
+    "points",
     "profile",
     "risk",
     "risk_norm",
     "route_colors",
+    "runs",
     "safety_domain",
     "section",
     "styles",
     "tracks",
+    "value_map",
 ]
