@@ -84,12 +84,13 @@ def report(
 
     drawn = routes if trial.curve is None else [trial.curve.route(city.cell), *routes[1:]]
     ball = premises.safe_distance if premises.safe_distance > 0 else None
-    flights = {} if trial.flight is None else {f"{drawn[0].planner}, flown in these gusts": trial.flight}
+    flights = {} if trial.flight is None else {drawn[0].planner: trial.flight}
     shown = drawn[1:] if flights else drawn  # the track covers its curve
-    in_colours = [*drawn[1:], drawn[0]] if flights else drawn  # of the scene, where flights come after routes
+    names = [route.planner for route in drawn]
+    colors = {name: style.color for name, style in zip(names, plot.styles(names), strict=True)}
     picture = io.BytesIO()
     with rc_context({"svg.hashsalt": "uavlab"}):  # same question, same bytes
-        profile = plot.profile(city, *in_colours, safe_distance=ball)
+        profile = plot.profile(city, *drawn, safe_distance=ball, colors=colors)
         profile.savefig(picture, format="svg", metadata={"Date": None})
     drawing = base64.b64encode(picture.getvalue()).decode()
     measured = premises_table(premises) + table(city, routes[0], start, goal)
@@ -103,7 +104,18 @@ def report(
         limits = f"<h2>Can it be flown?</h2>{trial.limits._repr_html_()}"
     return PAGE.format(
         title=html.escape(f"{routes[0].planner} through {city.name}"),
-        scene=html.escape(scene.page(city, *shown, flights=flights, safe_distance=ball, risk=risk_map)),
+        scene=html.escape(
+            scene.page(
+                city,
+                *shown,
+                flights=flights,
+                safe_distance=ball,
+                risk=risk_map,
+                wind=premises.wind,
+                uav=premises.uav,
+                colors=colors,
+            )
+        ),  # fmt: skip
         profile=f'<img alt="height and clearance along the route" src="data:image/svg+xml;base64,{drawing}">',
         rows=rows,
         limits=limits,
@@ -239,8 +251,8 @@ FOOT = """<p>uavlab {version}</p>
 GROUNDED = f"""{HEAD}<table>{{rows}}</table>
 {FOOT}"""
 
-PAGE = f"""{HEAD}<iframe title="3D scene" srcdoc="{{scene}}"></iframe>
-<p>Drag to turn, scroll to zoom, right-drag to move.</p>
+PAGE = f"""{HEAD}<iframe title="3D scene" allow="fullscreen" srcdoc="{{scene}}"></iframe>
+<p>Drag to turn, scroll to zoom, right-drag to move; the bar below plays the flight. Space pauses it.</p>
 <h2>Height and clearance along the route</h2>
 {{profile}}
 <h2>Measured</h2>

@@ -127,11 +127,16 @@ INSIDE = {
 """No underscore, and yet nobody's but the library's own."""
 
 
+def colored():
+    """What all figures of named things may have."""
+    return {"colors": {"curve": "#0072B2"}}
+
+
 def shown():
     """What all scenes may have."""
     return {
         "city": TOWN, "routes": (SEARCHED, {"curve": CURVE}), "safe_distance": 0.5, "expansion": False, "risk": RISK,
-        "slice_height": 2.5, "wind": CALM, "uav": DRONE, "colors": {"curve": "#0072B2"},
+        "slice_height": 2.5, "wind": CALM, "uav": DRONE, **colored(),
     }  # fmt: skip
 
 
@@ -526,22 +531,22 @@ CALLS = {
         "city": TOWN, "areas": {"built": TOWN.occupied[:, :, 2]}, **marked(), "area": (0.0, 12.0, 0.0, 12.0),
     },
     "plot.bars": lambda: {"values": {"a": 1.0, "b": 2.0}, "label": "length [m]", "title": "bars"},
-    "plot.convergence": lambda: {"comparison": COMPARISON, "by": "evaluations", "until": 5},
+    "plot.convergence": lambda: {"comparison": COMPARISON, "by": "evaluations", "until": 5, **colored()},
     "plot.corner": lambda: {
         "city": TOWN, "curves": (CURVE,), "center": (2.5, 9.5, 2.5), "reach": 4.0, "uav_diameter": 0.5, "route": LINE,
     },
-    "plot.crash_rates": lambda: {"rates": {"calm": {"A*": Rate(1.0, 0.5, 2.0)}}, "least": 0.0625},
-    "plot.curve_profile": lambda: {"curves": (CURVE,), "speed": 5.0, "cell": 1.0, "bank": 0.5, "max_pitch": 1.0},
+    "plot.crash_rates": lambda: {"rates": {"calm": {"A*": Rate(1.0, 0.5, 2.0)}}, "least": 0.0625, **colored()},
+    "plot.curve_profile": lambda: {"curves": (CURVE,), "speed": 5.0, "cell": 1.0, "bank": 0.5, "max_pitch": 1.0, **colored()},
     "plot.diagram": lambda: {
         "x_label": "x [m]", "y_label": "y [m]", "areas": {"wall": SQUARE}, "arrows": {"wind": [[1.0, 2.0], [3.0, 4.0]]},
         "x_range": (0.0, 12.0), "y_range": (0.0, 12.0), **marked(),
     },
-    "plot.expansions": lambda: {"city": TOWN, "routes": (SEARCHED,)},
+    "plot.expansions": lambda: {"city": TOWN, "routes": (SEARCHED,), **colored()},
     "plot.field": lambda: {
         "city": TOWN, "height": 2.5, "goal": GOAL, "routes": (LINE,), "area": (0.0, 12.0, 0.0, 12.0), "spacing": 3.0,
-        "setting": {"push": 5.0, "reach": 2.0},
+        "setting": {"push": 5.0, "reach": 2.0}, **colored(),
     },
-    "plot.front": lambda: {"routes": [LINE, EXACT], "marked": (LINE,), "label": "risk [1/h]"},
+    "plot.front": lambda: {"routes": [LINE, EXACT], "marked": (LINE,), "label": "risk [1/h]", **colored()},
     "plot.ground_risk": lambda: {"risk_map": RISK},
     "plot.ground_station": lambda: {"log": LOG},
     "plot.heat_map": lambda: {
@@ -549,7 +554,7 @@ CALLS = {
         "y_label": "y [m]", "label": "height [m]", "contours": [2.0, 5.0], "hatched": {"low": np.eye(3, 4, dtype=bool)},
         "norm": colors.Normalize(0.0, 12.0), "equal": True, **marked(),
     },
-    "plot.in_flight": lambda: {"flights": {"a": FLIGHT}, "limits": {"most": 28.0}},
+    "plot.in_flight": lambda: {"flights": {"a": FLIGHT}, "limits": {"most": 28.0}, **colored()},
     "plot.intervals": lambda: {
         "values": {"A*": {"town": [1.0, 0.5, 2.0], "field": 3.0}}, "label": "length [m]", "level": "95 %", "digits": 1,
         "log": True, "places": {"least": 1.5}, "x_range": (0.25, 8.0), "title": "rows", "colors": {"A*": "#0072B2"},
@@ -582,7 +587,7 @@ CALLS = {
     "plot.safety_domain": lambda: {"samples": SAMPLES, "domains": {"best": DOMAIN}},
     "plot.section": lambda: {
         "city": TOWN, "height": 2.5, "values": PRICES, "routes": (LINE,), "label": "price [1]",
-        "norm": colors.Normalize(0.0, 2.0),
+        "norm": colors.Normalize(0.0, 2.0), **colored(),
     },
     "plot.tracks": lambda: {
         "city": TOWN, "flights": {"a": [FLIGHT]}, "routes": {"a": LINE}, "area": (0.0, 12.0, 0.0, 12.0),

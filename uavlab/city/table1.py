@@ -88,10 +88,15 @@ def table1_city(cell: float = 1.0) -> City:
     >>> from uavlab.city import table1_city
     >>> city = table1_city()
     >>> city
-    <City Table 1: 100 × 100 × 100 voxels of 1 m, 5 buildings>
+    <City city of REPARE Table 1: 100 × 100 × 100 voxels of 1 m, 5 buildings>
     >>> int(city.occupied.sum())
     144858
     """
     return City.from_buildings(
-        table1_buildings(), cell=cell, origin=(0, 0, 0), size=(100, 100, 100), name="Table 1", voxels="centres"
+        table1_buildings(),
+        cell=cell,
+        origin=(0, 0, 0),
+        size=(100, 100, 100),
+        name="city of REPARE Table 1",
+        voxels="centres",
     )

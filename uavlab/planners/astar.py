@@ -163,7 +163,8 @@ def cheapest_route(
     if record:
         info["order"] = order[:expanded]
     if parent[last] == UNSEEN:
-        return replace(no_way(city, source, target, int(np.count_nonzero(parent))), info=info)
+        nowhere = no_way(city, source, target, int(np.count_nonzero(parent)))
+        return replace(nowhere, info=nowhere.info | info)
     nodes = trace(parent, first, last, city.shape)
     cost = float(g[last]) * city.cell
     return Route(city.center_of(city.index_of(nodes[::-1] if backwards else nodes)), "A*", cost=cost, info=info)
@@ -175,7 +176,7 @@ def no_way(city: City, source: int, target: int, reach: int) -> Route:
     reason = (
         f"no free way from {checks.show(start)} to {checks.show(goal)}: all {reach} voxels within reach were searched"
     )
-    return Route.none("A*", reason)
+    return Route.none("A*", reason, goal=goal)
 
 
 def penalty_zone(city: City, safe_distance: npt.ArrayLike, *, penalty: npt.ArrayLike, zone: str = "ball") -> np.ndarray:

@@ -101,7 +101,8 @@ def potential_field(
     -------
     Route
         `cost` is the length; `info["expanded"]`, its steps, and `info["elapsed"]` [s]. If it is trapped, flies into an
-        obstacle or gives up, `reached` is False, `reason` says where, and the points are the way until there.
+        obstacle or gives up, `reached` is False, `reason` says where, the points are the way until there, and
+        `info["goal"]` is where it should have ended.
 
     Raises
     ------
@@ -159,6 +160,8 @@ def potential_field(
     reason = REASONS[outcome].format(place=place, left=np.linalg.norm(points[-1] - aim), steps=max_steps)
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     cost = np.inf if reason else length
+    if reason:
+        info["goal"] = np.asarray(goal, dtype=float)
     route = Route(points, "potential field", reached=not reason, reason=reason, cost=cost, info=info)
     return timed(ends.added_to(route), began)
 

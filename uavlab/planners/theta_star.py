@@ -135,7 +135,8 @@ def theta_star(
     expanded = search(query, prices, tree, open_list(count))
     info = {"expanded": expanded}
     if tree.state[ends.target] == UNSEEN:
-        route = replace(no_way(city, ends.source, ends.target, expanded), planner="Theta*", info=info)
+        nowhere = no_way(city, ends.source, ends.target, expanded)
+        route = replace(nowhere, planner="Theta*", info=nowhere.info | info)
     else:
         nodes = [ends.target]
         while nodes[-1] != ends.source:

@@ -14,7 +14,7 @@ from matplotlib.ticker import NullLocator
 from uavlab import checks
 from uavlab.city import City
 from uavlab.planners.comparison import Comparison
-from uavlab.plot.colors import CONVERGENCE_STYLES, ROUTE_COLORS, route_colors
+from uavlab.plot.colors import BLUE, LINES, Style, styles
 from uavlab.plot.ground import CUT_COLOR, datum_of, ground_below, height_label
 from uavlab.plot.style import (
     DPI,
@@ -32,7 +32,12 @@ MOST_BARS = 1000
 """In one figure."""
 
 
-def front(routes: Sequence[Route], *marked: Route | Mapping[str, Route], label: str = "risk ∫ r ds/dx [1/h]") -> Figure:
+def front(
+    routes: Sequence[Route],
+    *marked: Route | Mapping[str, Route],
+    label: str = "risk ∫ r ds/dx [1/h]",
+    colors: Mapping[str, str] | None = None,
+) -> Figure:
     """Length against risk (the routes' `cost`): a Pareto front as a line with its points, other routes marked.
 
     Parameters
@@ -43,6 +48,8 @@ def front(routes: Sequence[Route], *marked: Route | Mapping[str, Route], label: 
         Others to compare, by name if it is a mapping, each with its cost in the same unit; the first five are drawn.
     label : str
         Of the vertical axis, with a unit.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -53,7 +60,7 @@ def front(routes: Sequence[Route], *marked: Route | Mapping[str, Route], label: 
     ------
     ValueError
         If `routes` is no list of `Route` or none of them arrives, one of `marked` is neither a route nor a mapping of
-        routes, one that arrives has no cost, or `label` is no text.
+        routes, one that arrives has no cost, `label` is no text, or `colors` are no colours by name.
 
     See Also
     --------
@@ -79,12 +86,11 @@ def front(routes: Sequence[Route], *marked: Route | Mapping[str, Route], label: 
         why = f": {routes[0].reason}" if routes else ", it is empty"
         raise ValueError(f"routes must hold one that arrives{why}")
     figure, axes = new_figure(6.4, 4.2)
-    axes.plot([r.length for r in routes], [r.cost for r in routes], "o-", color=ROUTE_COLORS[1], label="Pareto front",
+    looks = styles(["Pareto front", *(route.planner for route in others)], colors)
+    axes.plot([r.length for r in routes], [r.cost for r in routes], "o-", color=looks[0].color, label="Pareto front",
               drawstyle="steps-post", linewidth=1)  # fmt: skip
-    colors = [color for color in ROUTE_COLORS if color != ROUTE_COLORS[1]]
-    styles = cycle(zip(colors, "^sDvP", strict=True))
-    for route, (color, marker) in zip(others, styles, strict=False):
-        axes.plot(route.length, route.cost, marker, color=color, markersize=9, label=label_of(route))
+    for route, look, marker in zip(others, looks[1:], cycle("^sDvP"), strict=False):
+        axes.plot(route.length, route.cost, marker, color=look.color, markersize=9, label=label_of(route))
     axes.set(xlabel="length [m]", ylabel=label, yscale="log")
     axes.grid(alpha=0.3, which="both")
     axes.legend(fontsize=8)
@@ -96,6 +102,7 @@ def convergence(
     by: str = "evaluations",
     *,
     until: int | None = None,
+    colors: Mapping[str, str] | None = None,
 ) -> Figure:
     """How planners came near the exact optimum: median gap over maps and seeds, with a band between the quartiles.
 
@@ -105,11 +112,13 @@ def convergence(
     Parameters
     ----------
     comparison : Comparison
-        Of one to six planners.
+        Of one to seven planners.
     by : {"evaluations", "iterations"}
         What counts as effort.
     until : int, optional
         Last evaluation or iteration to show, at least 2; by default all of them.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -119,8 +128,9 @@ def convergence(
     Raises
     ------
     ValueError
-        If `comparison` is no `Comparison`, has more than six planners, or none that has a route in half of its runs;
-        `by` is neither "evaluations" nor "iterations"; or `until` is no whole number of at least 2.
+        If `comparison` is no `Comparison`, has more than seven planners, or none that has a route in half of its runs;
+        `by` is neither "evaluations" nor "iterations"; `until` is no whole number of at least 2; or `colors` are no
+        colours by name.
 
     See Also
     --------
@@ -136,17 +146,17 @@ def convergence(
     >>> comparison = compare_planners(ants, reference_campus(), seeds=range(2), budget=200, progress=False)
     >>> figure = plot.convergence(comparison)
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
-    ('evaluations made', 'gap to the exact optimum')
+    ('evaluations made', 'gap to the exact optimum\n(linear to 10 %, logarithmic beyond)')
     """
     checks.instance("comparison", comparison, Comparison)
     checks.one_of("by", by, ("evaluations", "iterations"))
     if until is not None:
         until = checks.whole("until", until, least=2)
-    if len(comparison.planners) > len(CONVERGENCE_STYLES):
-        raise ValueError(f"comparison must have at most {len(CONVERGENCE_STYLES)} planners, to tell their lines apart")
+    if len(comparison.planners) > len(LINES):
+        raise ValueError(f"comparison must have at most {len(LINES)} planners, to tell their lines apart")
     figure, axes = new_figure(8.4, 4.4)
     runs = zip(comparison.planners, comparison.histories, comparison.iterations, strict=True)
-    for (name, histories, ends), (color, style) in zip(runs, CONVERGENCE_STYLES, strict=False):
+    for (name, histories, ends), (color, style) in zip(runs, styles(comparison.planners, colors), strict=True):
         made = np.arange(1, histories.shape[-1] + 1) if by == "evaluations" else ends
         effort = made if by == "evaluations" else np.arange(1, len(ends) + 1)
         gaps = 100 * histories.reshape(-1, histories.shape[-1])[:, made - 1]
@@ -156,6 +166,8 @@ def convergence(
                   linewidth=2, label=plain(name))  # fmt: skip
         axes.fill_between(effort[shown], finite_or_nan(low)[shown], finite_or_nan(high)[shown], color=color, alpha=0.13,
                           linewidth=0)  # fmt: skip
+        for edge in (low, high):
+            axes.plot(effort[shown], finite_or_nan(edge)[shown], color=color, linewidth=0.5, alpha=0.5)
     if not any(np.isfinite(line.get_ydata()).any() for line in axes.lines):
         raise ValueError("comparison must have a planner with a route in half of its runs, to have a median gap")
     axes.axhline(0.0, color="0.4", linewidth=1)
@@ -166,12 +178,16 @@ def convergence(
     axes.yaxis.set_major_formatter("{x:g} %")
     axes.yaxis.set_minor_locator(NullLocator())
     effort, gaps = np.concatenate([line.get_xydata() for line in axes.lines[:-1]]).T
-    axes.set(xlabel=f"{by} made", ylabel="gap to the exact optimum", xlim=(0, effort.max()))
+    axes.set(
+        xlabel=f"{by} made",
+        ylabel="gap to the exact optimum\n(linear to 10 %, logarithmic beyond)",
+        xlim=(0, effort.max()),
+    )
     axes.set_ylim(min(-2.0, 1.2 * np.nanmin(gaps)), max(12.0, 1.5 * np.nanmax(gaps)))
     axes.xaxis.set_major_formatter("{x:,g}")
     axes.grid(alpha=0.3)
     axes.legend(title="median, band: quartiles", title_fontsize=8, fontsize=8, loc="upper left",
-                bbox_to_anchor=(1.0, 1.0))  # fmt: skip
+                bbox_to_anchor=(1.0, 1.0), handlelength=4.5)  # fmt: skip
     return finished(figure)
 
 
@@ -180,8 +196,13 @@ def finite_or_nan(values: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(values), values, np.nan)
 
 
-def profile(city: City, *routes: Drawn, safe_distance: float | None = None) -> Figure:
-    """Height and clearance along routes, with the distance to keep as a dashed line if it is given.
+def profile(
+    city: City, *routes: Drawn, safe_distance: float | None = None, colors: Mapping[str, str] | None = None
+) -> Figure:
+    """Height and clearance along routes, with the distance to keep as a line if it is given.
+
+    The clearance is the exact distance to the nearest obstacle, every quarter of a voxel and where it is least. Lines
+    that coincide show as one within the other.
 
     On level ground heights are counted from it. Else they are z of the map, and the ground below each route is an
     area: brown, or of several routes in their colours. Dotted lines are the tops of the occupied voxels below.
@@ -194,6 +215,8 @@ def profile(city: City, *routes: Drawn, safe_distance: float | None = None) -> F
         By name if it is a mapping.
     safe_distance : float, optional
         Distance to keep [m], above 0; 1 to 6 is usual.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -203,7 +226,8 @@ def profile(city: City, *routes: Drawn, safe_distance: float | None = None) -> F
     Raises
     ------
     ValueError
-        If `city` is no `City`, one of `routes` is neither a route nor a curve, or `safe_distance` is not above 0.
+        If `city` is no `City`, one of `routes` is neither a route nor a curve, `safe_distance` is not above 0, or
+        `colors` are no colours by name.
 
     See Also
     --------
@@ -228,14 +252,14 @@ def profile(city: City, *routes: Drawn, safe_distance: float | None = None) -> F
         safe_distance = checks.positive_number("safe_distance", safe_distance)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7.2, 4.6), dpi=DPI, layout="constrained")
     zero = datum_of(city) or 0.0
-    drawn = [(route, color) for route, color in zip(planned, route_colors(len(planned)), strict=True)
-             if len(route.points) > 1]  # fmt: skip
-    for route, color in drawn:
-        above.plot(route.distance, route.points[:, 2] - zero, color=color, label=label_of(route))
-        distance, clearance = route.clearance_profile(city)
-        below.plot(distance, clearance, color=color)
+    looks = styles([route.planner for route in planned], colors)
+    drawn = [(route, look) for route, look in zip(planned, looks, strict=True) if len(route.points) > 1]
+    for number, (route, (color, line)) in enumerate(drawn):
+        look = {"color": color, "linestyle": line, "linewidth": max(3.2 - 0.8 * number, 1.2)}
+        above.plot(route.distance, route.points[:, 2] - zero, label=label_of(route), **look)
+        below.plot(*route.clearance_profile(city), **look)
     if safe_distance is not None:
-        below.axhline(safe_distance, color="0.3", linestyle="--", linewidth=1)
+        below.axhline(safe_distance, color="0.3", linewidth=1)
         below.annotate(f"to keep: {safe_distance:g} m", (0.995, safe_distance), xycoords=("axes fraction", "data"),
                        ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
     lowest = 0.0
@@ -245,7 +269,7 @@ def profile(city: City, *routes: Drawn, safe_distance: float | None = None) -> F
     below.set_ylabel("clearance [m]")
     below.set_xlabel("distance flown [m]")
     if above.lines:
-        figure.legend(loc="outside upper center", ncols=2, fontsize=8)
+        figure.legend(loc="outside upper center", ncols=2, fontsize=8, handlelength=4.0)
     for axes in (above, below):
         axes.grid(alpha=0.3)
         axes.margins(x=0.01)
@@ -253,9 +277,9 @@ def profile(city: City, *routes: Drawn, safe_distance: float | None = None) -> F
     return finished(figure)
 
 
-def draw_below(axes: Axes, city: City, drawn: Sequence[tuple[Route, str]], zero: float) -> float:
+def draw_below(axes: Axes, city: City, drawn: Sequence[tuple[Route, Style]], zero: float) -> float:
     """Ground and obstacles below each route, above height `zero`; returns the lowest height."""
-    ways = [(route.resample(city.cell / 2), color) for route, color in drawn]
+    ways = [(route.resample(city.cell / 2), look.color) for route, look in drawn]
     grounds = [ground_below(city, way.points) - zero for way, _ in ways]
     lowest = min(0.0, *(float(ground.min()) for ground in grounds))
     alone = len(ways) == 1
@@ -321,7 +345,7 @@ def bars(values: Mapping[str, float], label: str, *, title: str = "") -> Figure:
     if len(lengths) > MOST_BARS:
         raise ValueError(f"values must be at most {MOST_BARS:,}, got {len(lengths):,}")
     figure, axes = plt.subplots(figsize=(6.4, 0.5 * len(lengths) + 1.1), dpi=DPI, layout="constrained")
-    drawn = axes.barh([plain(name) for name in named], lengths, color=ROUTE_COLORS[1])
+    drawn = axes.barh([plain(name) for name in named], lengths, color=BLUE)
     axes.bar_label(drawn, [f"{v:,.0f}" if abs(v) >= 100 else f"{v:.3g}" for v in lengths], padding=3)
     axes.invert_yaxis()
     axes.xaxis.set_major_formatter("{x:,g}")

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from uavlab import checks
 from uavlab.city import City
 from uavlab.plot.charts import finite_or_nan
-from uavlab.plot.colors import ROUTE_COLORS, route_colors
+from uavlab.plot.colors import BLACK, BLUE, ORANGE, styles
 from uavlab.plot.ground import draw_cut
 from uavlab.plot.style import (
     DPI,
@@ -36,7 +36,12 @@ LABEL_HEIGHT = 0.17
 
 
 def curve_profile(
-    *curves: Curve | Mapping[str, Curve], speed: float, cell: float, bank: float = BANK, max_pitch: float = MAX_PITCH
+    *curves: Curve | Mapping[str, Curve],
+    speed: float,
+    cell: float,
+    bank: float = BANK,
+    max_pitch: float = MAX_PITCH,
+    colors: Mapping[str, str] | None = None,
 ) -> Figure:
     """Curvature and pitch along curves, with the papers' limits and ours (RISK-ACO Figs 9-10, PSO-BAS Figs 7-8).
 
@@ -52,6 +57,8 @@ def curve_profile(
         Edge of a voxel [m], above 0; 1 to 5 is usual.
     bank, max_pitch : float
         Limits of the bank, below π/2, and of the pitch, at most π/2 [rad], above 0.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -62,7 +69,7 @@ def curve_profile(
     ------
     ValueError
         If `curves` is empty or holds anything else than curves, `speed`, `cell`, `bank` or `max_pitch` is not above 0,
-        `bank` is not below π/2, or `max_pitch` is above it.
+        `bank` is not below π/2, `max_pitch` is above it, or `colors` are no colours by name.
 
     See Also
     --------
@@ -89,11 +96,12 @@ def curve_profile(
         raise ValueError(f"bank must be below π/2 rad (degrees? np.radians makes radians of them), got {bank:g}")
     checks.within("max_pitch", max_pitch, 0.0, np.pi / 2, "rad (degrees? np.radians makes radians of them)")
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8.4, 5.4), dpi=DPI, layout="constrained")
-    for curve, color in zip(drawn, route_colors(len(drawn)), strict=True):
-        above.plot(curve.distance, finite_or_nan(curve.curvature), color=color, label=plain(curve.planner))
-        above.plot(curve.distance, finite_or_nan(curve.level_curvature), ":", color=color, linewidth=1.2)
-        below.plot(curve.distance, np.degrees(curve.pitch), color=color)
-    above.plot([], ":", color="0.3", linewidth=1.2, label="level part of it")
+    for curve, (color, line) in zip(drawn, styles([curve.planner for curve in drawn], colors), strict=True):
+        look = {"color": color, "linestyle": line}
+        above.plot(curve.distance, finite_or_nan(curve.curvature), label=plain(curve.planner), **look)
+        above.plot(curve.distance, finite_or_nan(curve.level_curvature), color=color, linewidth=3.5, alpha=0.25)
+        below.plot(curve.distance, np.degrees(curve.pitch), **look)
+    above.plot([], color="0.3", linewidth=3.5, alpha=0.25, label="level part of it")
     papers, banked = 1 / cell, GRAVITY * np.tan(bank) / speed**2
     highest = 1.15 * max(above.get_ylim()[1], papers, banked)
     sides = ("bottom", "top") if papers >= banked else ("top", "bottom")
@@ -188,13 +196,13 @@ def corner(
         draw_map(axes, city, layer, "Greys", vmin=0.0, vmax=1.6)
         draw_cut(axes, city, k)
         for way in planned:
-            axes.plot(*way.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2, label=label_of(way))
-        axes.add_collection(PolyCollection(list(swept(curve, uav_diameter)), facecolor=ROUTE_COLORS[1], alpha=0.35))
-        axes.plot(*curve.points[:, :2].T, color=ROUTE_COLORS[1], label=f"curve and its body of {uav_diameter:g} m")
+            axes.plot(*way.points[:, :2].T, "--", color=BLACK, linewidth=1.2, label=label_of(way))
+        axes.add_collection(PolyCollection(list(swept(curve, uav_diameter)), facecolor=BLUE, alpha=0.35))
+        axes.plot(*curve.points[:, :2].T, color=BLUE, label=f"curve and its body of {uav_diameter:g} m")
         touches = np.append(curve.least_distances(city, uav_diameter) < (1 - CONTACT) * uav_diameter / 2, False)
-        axes.plot(*np.where(touches[:, None], curve.points, np.nan)[:, :2].T, color=ROUTE_COLORS[0], linewidth=4,
+        axes.plot(*np.where(touches[:, None], curve.points, np.nan)[:, :2].T, color=ORANGE, linewidth=4,
                   label="touches an obstacle")  # fmt: skip
-        axes.plot(*curve.control[:, :2].T, "o", color=ROUTE_COLORS[2], markersize=4, label="control points")
+        axes.plot(*curve.control[:, :2].T, "o", color=BLACK, markersize=4, label="control points")
         axes.set(xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
         clear, sharpest = curve.clearance(city), curve.curvature.max()
         axes.set_title(f"{plain(curve.planner)}: {clear:.2f} m clear, κ ≤ {sharpest:.2f} 1/m", fontsize=9)

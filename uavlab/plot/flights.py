@@ -17,7 +17,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.flight import Flight, Rate
 from uavlab.offsets import SafetyDomain
-from uavlab.plot.colors import CONVERGENCE_STYLES, CRASH_COLOR, ROUTE_COLORS, SEQUENTIAL
+from uavlab.plot.colors import BLACK, CRASH_COLOR, LINES, ORANGE, PINK, SEQUENTIAL, styles
 from uavlab.plot.ground import built_columns
 from uavlab.plot.style import (
     DPI,
@@ -30,9 +30,15 @@ from uavlab.plot.style import (
     plain,
 )
 from uavlab.route import Route, Way
+from uavlab.weather import Wind
 
 TRACK_STEP = 0.2
 """From point to point of a flight's track [s]."""
+WIND_COLOR = "#3B6E8F"
+"""Of its arrows."""
+MARKERS = "osD^vP*"
+CORNER = np.radians(10.0)
+"""Sharper bends of a route are corners."""
 
 
 def tracks(
@@ -41,8 +47,10 @@ def tracks(
     routes: Mapping[str, Route | Way] | None = None,
     *,
     area: tuple[float, float, float, float] | None = None,
+    wind: Wind | None = None,
+    colors: Mapping[str, str] | None = None,
 ) -> Figure:
-    """Flights from above, a panel for each name: their tracks, and a red X where one crashed.
+    """Flights from above, a panel for each name: their tracks in its colour, and a red X where one crashed.
 
     Parameters
     ----------
@@ -55,6 +63,10 @@ def tracks(
         arrive ends.
     area : (west, east, south, north), optional
         Part of the map to show [m], on the map at least in part; by default all of it.
+    wind : Wind, optional
+        An arrow shows where its mean blows to, and how fast.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -66,7 +78,8 @@ def tracks(
     ValueError
         If `city` is no `City`, `flights` and `routes` together have no name, what stands behind a name in `flights`
         isn't flights, what stands behind one in `routes` is neither a route nor a curve, or `area` is not four finite
-        numbers, each second one above the one before it, or lies beside the map.
+        numbers, each second one above the one before it, or lies beside the map; `wind` is no `Wind`; or `colors` are
+        no colours by name.
 
     See Also
     --------
@@ -92,15 +105,18 @@ def tracks(
     named = {name: made.get(name, []) for name in planned | made}
     if not named:
         raise ValueError("flights is empty: give at least one name, as in {'A*': [flight]}")
+    if wind is not None:
+        checks.instance("wind", wind, Wind)
     west, east, south, north = area_of(city, area)
     height = 3.1 * (north - south) / (east - west) + 1.2
     figure, panels = plt.subplots(1, len(named), figsize=(3.1 * len(named) + 0.5, height), dpi=DPI, squeeze=False,
                                   sharey=True, layout="constrained")  # fmt: skip
     built = np.where(built_columns(city), 1.0, np.nan)
-    for axes, (name, flown) in zip(panels[0], named.items(), strict=True):
+    looks = styles(list(named), colors)
+    for axes, (name, flown), look in zip(panels[0], named.items(), looks, strict=True):
         draw_map(axes, city, built, "Greys", vmin=0.0, vmax=3.0)
         for flight in flown:
-            axes.plot(*track(flight)[1][:, :2].T, color=ROUTE_COLORS[1], linewidth=0.8, alpha=0.6)
+            axes.plot(*track(flight)[1][:, :2].T, color=look.color, linewidth=0.8, alpha=0.6)
         ends = np.array([flight.position[-1, :2] for flight in flown if flight.outcome == "crashed"]).reshape(-1, 2)
         title = f"{plain(name)}: {len(ends)} of {len(flown)} crash" if flown else plain(name)
         if name in planned:
@@ -109,30 +125,54 @@ def tracks(
         axes.plot(*ends.T, "x", color=CRASH_COLOR, markersize=8, markeredgewidth=2, zorder=5)
         axes.set(xlim=(west, east), ylim=(south, north))
         axes.set_title(title, fontsize=10)
+        if wind is not None:
+            draw_wind(axes, wind)
     for axes in panels[0, 1:]:
         axes.set_ylabel("")
-    parts: list[tuple[str, Any, str, str]] = [
-        (ROUTE_COLORS[1], "-", "", "flown"),
-        (ROUTE_COLORS[2], "--", "", "planned"),
-        (CRASH_COLOR, "", "x", "crash"),
-        (ROUTE_COLORS[2], "", "o", "start"),
-        (ROUTE_COLORS[2], "", "^", "goal"),
-    ]
-    if any(not way.reached for way in planned.values()):
-        parts.append((ROUTE_COLORS[2], "", "s", "trapped"))
-    handles = [Line2D([], [], color=c, linestyle=line, marker=m, label=label) for c, line, m, label in parts]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=8)
+    explain_tracks(figure, looks[0].color if len(named) == 1 else "", any(not way.reached for way in planned.values()))
     return finished(figure)
+
+
+def explain_tracks(figure: Figure, color: str, stopped: bool) -> None:
+    """The legend of flights from above; without a colour each panel has its own."""
+    parts: list[tuple[str, Any, str, str]] = [
+        (color or "0.35", "-", "", "flown" if color else "flown, in a colour for each panel"),
+        (BLACK, "--", "", "planned"),
+        (CRASH_COLOR, "", "x", "crash"),
+        (BLACK, "", "o", "start"),
+        (BLACK, "", "^", "goal"),
+    ]
+    if stopped:
+        parts.append((BLACK, "", "s", "stopped"))
+    handles = [Line2D([], [], color=c, linestyle=line, marker=m, label=label) for c, line, m, label in parts]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3 if len(figure.axes) == 1 else 6, fontsize=8)
+
+
+def draw_wind(axes: Axes, wind: Wind) -> None:
+    """An arrow in a corner of a plan, along the mean wind, with its speed."""
+    blows = np.array(wind.mean[:2])
+    speed = float(np.hypot(*blows))
+    if speed == 0:
+        return
+    x, y = 0.06 * blows / speed
+    box = {"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "0.8", "alpha": 0.9}
+    axes.text(
+        0.15, 0.04, f"wind {speed:.3g} m/s", transform=axes.transAxes, fontsize=7, ha="center", bbox=box, zorder=6
+    )
+    axes.annotate("", (0.15 + x, 0.17 + y), (0.15 - x, 0.17 - y), xycoords="axes fraction", zorder=6,
+                  arrowprops={"arrowstyle": "simple", "color": WIND_COLOR, "mutation_scale": 14})  # fmt: skip
 
 
 def draw_planned(axes: Axes, route: Route) -> None:
     """What was to be flown, dashed: a disc where it starts, a triangle at its goal, a square where it got stuck."""
-    axes.plot(*route.points[:, :2].T, "--", color=ROUTE_COLORS[2], linewidth=1.2)
-    axes.plot(*route.points[:1, :2].T, "o", color=ROUTE_COLORS[2], markersize=7)
-    axes.plot(*route.points[-1:, :2].T, "^" if route.reached else "s", color=ROUTE_COLORS[2], markersize=7)
+    axes.plot(*route.points[:, :2].T, "--", color=BLACK, linewidth=1.2)
+    axes.plot(*route.points[:1, :2].T, "o", color=BLACK, markersize=7)
+    axes.plot(*route.points[-1:, :2].T, "^" if route.reached else "s", color=BLACK, markersize=7)
 
 
-def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01) -> Figure:
+def crash_rates(
+    rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01, colors: Mapping[str, str] | None = None
+) -> Figure:
     """Crashes per 1 000 flights with their intervals on a logarithmic scale, a group for each case.
 
     Each planner has a colour. A rate of 0 is an arrow down from the upper end of its interval.
@@ -140,9 +180,11 @@ def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01)
     Parameters
     ----------
     rates : mapping of mappings
-        Case → planner → what `uavlab.flight.crash_rate` returns; one to six planners.
+        Case → planner → what `uavlab.flight.crash_rate` returns; one to seven planners.
     least : float
         Where the axis begins [crashes per 1 000 flights], above 0 and below 1 000.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -152,8 +194,8 @@ def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01)
     Raises
     ------
     ValueError
-        If `rates` aren't rates by planner by case, have no planner or more than six, or `least` is not above 0 or not
-        below 1 000.
+        If `rates` aren't rates by planner by case, have no planner or more than seven, `least` is not above 0 or not
+        below 1 000, or `colors` are no colours by name.
 
     See Also
     --------
@@ -172,14 +214,15 @@ def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01)
     cases = checks.by_name("rates", rates, least=0)
     rates = {case: checks.by_name(f"rates[{case!r}]", cases[case], Rate, least=0) for case in cases}
     planners = list(dict.fromkeys(name for by_planner in rates.values() for name in by_planner))
-    if not 1 <= len(planners) <= len(ROUTE_COLORS):
-        raise ValueError(f"rates must hold one to {len(ROUTE_COLORS)} planners, got {len(planners)}")
+    if not 1 <= len(planners) <= len(MARKERS):
+        raise ValueError(f"rates must hold one to {len(MARKERS)} planners, got {len(planners)}")
+    looks = styles(planners, colors)
     least = checks.positive_number("least", least)
     if least >= 1000:
         raise ValueError(f"least must be below 1,000 crashes per 1,000 flights, got {least:g}")
     figure, axes = new_figure(8.6, 0.62 * len(rates) * max(len(planners) / 4, 0.7) + 1.5)
     apart = 0.8 / len(planners)
-    for number, (name, color, marker) in enumerate(zip(planners, ROUTE_COLORS, "osD^vP", strict=False)):
+    for number, (name, (color, _), marker) in enumerate(zip(planners, looks, MARKERS, strict=False)):
         axes.plot([], [], marker, color=color, label=plain(name))
         for row, by_planner in enumerate(rates.values()):
             if name not in by_planner:
@@ -202,13 +245,17 @@ def crash_rates(rates: Mapping[str, Mapping[str, Rate]], *, least: float = 0.01)
     return finished(figure)
 
 
-def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
+def in_flight(flights: Mapping[str, Flight], *, colors: Mapping[str, str] | None = None, **limits: float) -> Figure:
     """How flights went, over time: offset across the route, speed over ground and thrust.
+
+    At a corner of the route its direction jumps, and what was along it is across it then: thin lines show where.
 
     Parameters
     ----------
     flights : mapping of Flight
-        By name, at most six; an X where one crashed.
+        By name, at most seven; an X where one crashed.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
     limits : float
         Thrust limits [N] to mark, by name.
 
@@ -220,8 +267,8 @@ def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
     Raises
     ------
     ValueError
-        If `flights` holds anything else than flights, none that flew, or more than six that did, or one of `limits` is
-        no finite number.
+        If `flights` holds anything else than flights, none that flew, or more than seven that did, one of `limits` is
+        no finite number, or `colors` are no colours by name.
 
     See Also
     --------
@@ -240,13 +287,14 @@ def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
     ['offset across the route,\\nleft is positive [m]', 'speed over ground\\n[m/s]', 'thrust [N]']
     """
     flown = {name: flight for name, flight in named_flights(flights).items() if len(flight.log)}
-    if not 1 <= len(flown) <= len(CONVERGENCE_STYLES):
-        raise ValueError(f"flights must hold one to {len(CONVERGENCE_STYLES)} that flew, got {len(flown)}")
+    if not 1 <= len(flown) <= len(LINES):
+        raise ValueError(f"flights must hold one to {len(LINES)} that flew, got {len(flown)}")
+    looks = styles(list(flown), colors)
     limits = {name: checks.number(name, limit, checks.finite) for name, limit in limits.items()}
     figure, panels = plt.subplots(3, 1, figsize=(8.6, 6.4), dpi=DPI, sharex=True, layout="constrained")
     quantities = ("across", "offset across the route,\nleft is positive [m]"), ("speed", "speed over ground\n[m/s]")
     for axes, (column, label) in zip(panels, (*quantities, ("thrust", "thrust [N]")), strict=True):
-        for (name, flight), (color, style) in zip(flown.items(), CONVERGENCE_STYLES, strict=False):
+        for (name, flight), (color, style) in zip(flown.items(), looks, strict=True):
             values = flight.column(column)
             axes.plot(flight.time, values, color=color, linestyle=style, linewidth=1.2, label=plain(name))
             if flight.outcome == "crashed":
@@ -258,11 +306,27 @@ def in_flight(flights: Mapping[str, Flight], **limits: float) -> Figure:
         panels[2].annotate(plain(name), (0.995, limit), (0, 1), xycoords=("axes fraction", "data"),
                            textcoords="offset points", ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
     panels[2].margins(y=0.12)
+    corners = [(moment, look.color) for flight, look in zip(flown.values(), looks, strict=True)
+               for moment in corner_times(flight)]  # fmt: skip
+    for number, (moment, color) in enumerate(corners):
+        panels[0].axvline(
+            moment, color=color, linewidth=0.7, alpha=0.5, label="_" * bool(number) + "corner of the route"
+        )
     panels[0].axhline(0.0, color="0.4", linewidth=1)
     panels[1].set_ylim(bottom=0.0)
     panels[2].set(xlabel="time in flight [s]", xlim=(0, max(flight.duration for flight in flown.values())))
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=8)
     return finished(figure)
+
+
+def corner_times(flight: Flight) -> np.ndarray:
+    """When the route turns below a flight by more than `CORNER` (C,) [s]."""
+    legs = np.diff(flight.reference, axis=0)
+    moved = np.flatnonzero(np.linalg.norm(legs, axis=1) > 1e-9)
+    along = legs[moved] / np.linalg.norm(legs[moved], axis=1, keepdims=True)
+    sharp = np.einsum("ij,ij->i", along[:-1], along[1:]) < np.cos(CORNER)
+    moments = flight.time[moved[1:][sharp]]
+    return moments[np.diff(moments, prepend=-np.inf) > TRACK_STEP]  # a step may end within a corner
 
 
 def safety_domain(samples: npt.ArrayLike, **domains: SafetyDomain) -> Figure:
@@ -313,8 +377,8 @@ def safety_domain(samples: npt.ArrayLike, **domains: SafetyDomain) -> Figure:
     density = counts / len(points) / (edges[1] - edges[0]) ** 2
     image = axes.pcolormesh(edges, edges, np.where(density > 0, density, np.nan).T, cmap=SEQUENTIAL, norm=LogNorm())
     axes.set_facecolor("0.93")
-    styles = zip((ROUTE_COLORS[0], "#FFFFFF", ROUTE_COLORS[3]), ("-", "--", "-."), strict=True)
-    for (name, domain), (color, style) in zip(domains.items(), styles, strict=False):
+    looks = zip((ORANGE, "#FFFFFF", PINK), ("-", "--", "-."), strict=True)
+    for (name, domain), (color, style) in zip(domains.items(), looks, strict=False):
         label = f"{plain(name.replace('_', ' '))}: {domain.in_ellipse:.2%} inside"
         axes.plot(*domain.ellipse.T, color="black", linewidth=3.6)
         axes.plot(*domain.ellipse.T, style, color=color, linewidth=2.2, label=label)

@@ -18,7 +18,7 @@ from matplotlib.ticker import MaxNLocator
 
 from uavlab.city import City, NoFlyZone
 from uavlab.city.rasterise import TOUCH, rasterise, touches
-from uavlab.plot.style import draw_map, plain
+from uavlab.plot.style import draw_map, plain, titled
 
 LAND_COLOR = "#E3E1D6"
 """Of terrain from above and in space."""
@@ -71,7 +71,7 @@ def title_of(city: City, height: float, dark: str) -> str:
     apart = " " if datum_of(city) is not None else "\n"  # the longer words take a line more
     if city.ground is not None and height < extent_of_ground(city)[1] + city.cell:
         dark += ", ground brown"
-    return f"{plain(city.name)}, {height_words(city, height)}{apart}({dark})"
+    return f"{titled(city.name)}, {height_words(city, height)}{apart}({dark})"
 
 
 def ground_lattice(city: City, most: int = MOST_QUADS) -> np.ndarray:

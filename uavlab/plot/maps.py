@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -14,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from uavlab import checks
 from uavlab.city import City
 from uavlab.planners.potential_field import potential_forces
-from uavlab.plot.colors import ROUTE_COLORS, SEQUENTIAL
+from uavlab.plot.colors import SEQUENTIAL, styles
 from uavlab.plot.ground import (
     LAND_COLOR,
     built_columns,
@@ -36,12 +37,13 @@ from uavlab.plot.style import (
     level_of,
     new_figure,
     plain,
+    titled,
     with_gaps,
 )
 from uavlab.risk import RiskMap
 
 
-def plan(city: City, *routes: Drawn) -> Figure:
+def plan(city: City, *routes: Drawn, colors: Mapping[str, str] | None = None) -> Figure:
     """The city from above, darker where it is higher, with routes, heights of the ground and no-fly zones.
 
     Parameters
@@ -49,7 +51,10 @@ def plan(city: City, *routes: Drawn) -> Figure:
     city : City
         Its columns of voxels are grey, by the height of their tops.
     routes : Route or Curve, or mapping
-        By name if it is a mapping; those without points are named in the legend.
+        By name if it is a mapping; those without points are named in the legend. One that doesn't arrive ends in a
+        square, and where it should have arrived is a hollow triangle.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -59,7 +64,8 @@ def plan(city: City, *routes: Drawn) -> Figure:
     Raises
     ------
     ValueError
-        If `city` is no `City`, or one of `routes` is neither a route nor a curve; a list of them has to be unpacked.
+        If `city` is no `City`, one of `routes` is neither a route nor a curve (a list of them has to be unpacked), or
+        `colors` are no colours by name.
 
     See Also
     --------
@@ -87,8 +93,8 @@ def plan(city: City, *routes: Drawn) -> Figure:
     add_color_bar(figure, axes, image, "top of the buildings above the ground [m]").ax.set_ylim(0, max(tops.max(), 1.0))
     draw_contours(axes, city)
     draw_zones(axes, city)
-    draw_routes(axes, planned)
-    axes.set_title(plain(city.name))
+    draw_routes(axes, planned, colors)
+    axes.set_title(titled(city.name))
     return finished(figure)
 
 
@@ -102,6 +108,7 @@ def section(
     *routes: Drawn,
     label: str = "clearance [m]",
     norm: Normalize | None = None,
+    colors: Mapping[str, str] | None = None,
 ) -> Figure:
     """A horizontal section: buildings black, ground brown, and values of the voxels at this height in colour.
 
@@ -121,6 +128,8 @@ def section(
         Of the colour bar, with a unit.
     norm : matplotlib.colors.Normalize, optional
         From values to colours; by default evenly over the values shown.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -131,7 +140,7 @@ def section(
     ------
     ValueError
         If `city` is no `City`, `height` lies outside of the map, `values` haven't the city's shape, one of `routes` is
-        neither a route nor a curve, `label` is no text, or `norm` is no `Normalize`.
+        neither a route nor a curve, `label` is no text, `norm` is no `Normalize`, or `colors` are no colours by name.
 
     See Also
     --------
@@ -144,7 +153,7 @@ def section(
     >>> from uavlab.city import table1_city
     >>> figure = plot.section(table1_city(), 30.0)
     >>> figure.axes[0].get_title()
-    'Table 1, 30 m above the ground (buildings black)'
+    'City of REPARE Table 1, 30 m above the ground (buildings black)'
     """
     planned = drawn_routes(city, routes)
     height = checks.number("height", height)
@@ -159,7 +168,7 @@ def section(
     axes.set_facecolor("black")
     draw_cut(axes, city, k)
     draw_zones(axes, city, height)
-    draw_routes(axes, planned)
+    draw_routes(axes, planned, colors)
     axes.set_title(title_of(city, height, "buildings black"))
     return finished(figure)
 
@@ -183,6 +192,7 @@ def field(
     *routes: Drawn,
     area: tuple[float, float, float, float] | None = None,
     spacing: float = 3.0,
+    colors: Mapping[str, str] | None = None,
     **setting: Any,
 ) -> Figure:
     """A potential field in a horizontal section: its potential U as colours and lines, arrows along its force −∇U.
@@ -201,6 +211,8 @@ def field(
         Part of the map to show [m], on the map at least in part; by default all of it.
     spacing : float
         From arrow to arrow [m], above 0, so that there are at most 100 000; 2 to 5 is usual.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
     setting
         Of the field, as for `uavlab.planners.potential_forces`: `pull`, `push`, `reach`, `attraction`, `obstacles`.
 
@@ -215,7 +227,8 @@ def field(
         If `city` is no `City`, `height` lies outside of the map, `goal` is not three finite numbers, one of `routes`
         is neither a route nor a curve, `area` is not four finite numbers, each second one above the one before it, or
         lies beside the map, or has no free point at that height, `spacing` is not above 0, or so small that there are
-        more than 100 000 arrows, or one of `setting` is wrong as for `uavlab.planners.potential_forces`.
+        more than 100 000 arrows, `colors` are no colours by name, or one of `setting` is wrong as for
+        `uavlab.planners.potential_forces`.
 
     See Also
     --------
@@ -265,13 +278,13 @@ def field(
     axes.quiver(*points[..., :2].T, *direction[..., :2].T, pivot="mid", angles="xy", scale_units="xy",
                 scale=1.2 / spacing, width=0.005, edgecolor="white", linewidth=0.5)  # fmt: skip
     draw_zones(axes, city, height)
-    draw_routes(axes, planned)
+    draw_routes(axes, planned, colors)
     axes.set(xlim=(west, east), ylim=(south, north))
     axes.set_title(title_of(city, height, "buildings black"))
     return finished(figure)
 
 
-def risk(risk_map: RiskMap, height: float, *routes: Drawn) -> Figure:
+def risk(risk_map: RiskMap, height: float, *routes: Drawn, colors: Mapping[str, str] | None = None) -> Figure:
     """The risk of flying at a height; buildings black, hatched where the UAV would be too low.
 
     Colours are on a logarithmic scale, the same at all heights.
@@ -284,6 +297,8 @@ def risk(risk_map: RiskMap, height: float, *routes: Drawn) -> Figure:
         Where to cut, z [m], on the map.
     routes : Route or Curve, or mapping
         Seen from above.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -293,8 +308,8 @@ def risk(risk_map: RiskMap, height: float, *routes: Drawn) -> Figure:
     Raises
     ------
     ValueError
-        If `risk_map` is no `RiskMap`, `height` lies outside of the map, or one of `routes` is neither a route nor a
-        curve.
+        If `risk_map` is no `RiskMap`, `height` lies outside of the map, one of `routes` is neither a route nor a
+        curve, or `colors` are no colours by name.
 
     See Also
     --------
@@ -310,12 +325,12 @@ def risk(risk_map: RiskMap, height: float, *routes: Drawn) -> Figure:
     >>> campus = reference_campus()
     >>> figure = plot.risk(campus, 30.0, least_risk(campus, *CAMPUS_FLIGHT))
     >>> figure.axes[0].get_title()
-    'reference campus, 30 m above the ground (too low hatched)'
+    'Reference campus, 30 m above the ground (too low hatched)'
     """
     checks.instance("risk_map", risk_map, RiskMap)
     city, height = risk_map.city, checks.number("height", height)
     k = level_of(city, height)
-    figure = section(city, height, risk_map.rate, *routes, label=RISK_LABEL, norm=risk_norm(risk_map))
+    figure = section(city, height, risk_map.rate, *routes, label=RISK_LABEL, norm=risk_norm(risk_map), colors=colors)
     closed = city.in_no_fly if city.no_fly else city.occupied
     too_low = ~(risk_map.flyable | city.occupied | closed)[:, :, k]
     if too_low.any():
@@ -371,7 +386,7 @@ def layers(risk_map: RiskMap) -> Figure:
     return finished(figure)
 
 
-def expansions(city: City, *routes: Drawn) -> Figure:
+def expansions(city: City, *routes: Drawn, colors: Mapping[str, str] | None = None) -> Figure:
     """Which columns of the map each search expanded, and when: dark first, bright last.
 
     Parameters
@@ -380,6 +395,8 @@ def expansions(city: City, *routes: Drawn) -> Figure:
         On which the routes were planned.
     routes : Route, or mapping
         At least one, planned with `record=True`.
+    colors : mapping of str, optional
+        Name → colour, for what should look the same elsewhere, as for `styles`.
 
     Returns
     -------
@@ -389,7 +406,8 @@ def expansions(city: City, *routes: Drawn) -> Figure:
     Raises
     ------
     ValueError
-        If `city` is no `City`, or `routes` is empty or holds one that didn't record its order.
+        If `city` is no `City`, `routes` is empty or holds one that didn't record its order, or `colors` are no colours
+        by name.
 
     See Also
     --------
@@ -413,7 +431,8 @@ def expansions(city: City, *routes: Drawn) -> Figure:
         1, len(searches), figsize=(3.4 * len(searches) + 1, 3.7), dpi=DPI, squeeze=False, layout="constrained"
     )
     built = built_columns(city)
-    for axes, route in zip(all_axes[0], searches, strict=True):
+    looks = styles([route.planner for route in searches], colors)
+    for axes, route, look in zip(all_axes[0], searches, looks, strict=True):
         order = route.info["order"]
         first = np.full(city.shape[:2], np.inf)
         index = city.index_of(order)
@@ -421,7 +440,8 @@ def expansions(city: City, *routes: Drawn) -> Figure:
         draw_map(axes, city, np.where(built, 1.0, np.nan), "Greys", vmin=0, vmax=3)
         image = draw_map(axes, city, np.where(np.isfinite(first), first, np.nan), SEQUENTIAL, vmin=0, vmax=1)
         if len(route.points) > 1:
-            axes.plot(*route.points[:, :2].T, color=ROUTE_COLORS[0], linewidth=1.5)
+            axes.plot(*route.points[:, :2].T, color="white", linewidth=3.0)
+            axes.plot(*route.points[:, :2].T, color=look.color, linewidth=1.5)
         name = plain(route.info.get("heuristic", route.planner))
         axes.set_title(f"{name}: {len(order):,} expanded", fontsize=10)
     figure.colorbar(image, ax=all_axes, label="first looked at, as a share of the search")

@@ -13,13 +13,12 @@ from matplotlib.lines import Line2D
 from uavlab import checks
 from uavlab.mavlink import FlightLog
 from uavlab.mission.fences import polygon_on
-from uavlab.plot.colors import CRASH_COLOR, ROUTE_COLORS
+from uavlab.plot.colors import BLACK, BLUE, CRASH_COLOR, GREEN, ORANGE
 from uavlab.plot.flights import draw_planned
 from uavlab.plot.ground import built_columns
 from uavlab.plot.style import DPI, draw_map, finished
 
-FLOWN, PLANNED, FENCE = ROUTE_COLORS[1], ROUTE_COLORS[2], ROUTE_COLORS[4]
-BREACH = ROUTE_COLORS[0]
+FLOWN, PLANNED, FENCE, BREACH = BLUE, BLACK, GREEN, ORANGE
 BUILT = "#c7c7c7"
 """As the map has it."""
 

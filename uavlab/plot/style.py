@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import matplotlib
 import matplotlib.pyplot as plt
@@ -15,7 +16,7 @@ from matplotlib.figure import Figure
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.plot.colors import route_colors
+from uavlab.plot.colors import BLACK, styles
 from uavlab.risk import RiskMap
 from uavlab.route import Route, Way, as_route
 
@@ -175,15 +176,44 @@ def add_color_bar(figure: Figure, axes: Axes, image, label: str):
     return figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
 
 
-def draw_routes(axes: Axes, routes: Sequence[Route]) -> None:
-    """Routes from above: a disc where each starts, a triangle at its goal."""
-    for route, color in zip(routes, route_colors(len(routes)), strict=True):
+SIGNS: dict[str, dict[str, Any]] = {
+    "start": {"marker": "o"},
+    "goal": {"marker": "^"},
+    "stopped": {"marker": "s"},
+    "goal not reached": {"marker": "^", "markerfacecolor": "none", "markeredgewidth": 1.8},
+}
+"""Where routes begin and end, in plans and scenes."""
+
+
+def draw_routes(axes: Axes, routes: Sequence[Route], colors: Mapping[str, str] | None = None) -> None:
+    """Routes from above, each with its start and where it arrives, or stops and should have arrived."""
+    looks = styles([route.planner for route in routes], colors)
+    signs = []
+    for route, (color, line) in zip(routes, looks, strict=True):
         axes.plot(*route.points[:, :2].T, color="white", linewidth=3.5)
-        axes.plot(*route.points[:, :2].T, color=color, linewidth=2, label=label_of(route))
-        for point, marker in ((route.points[:1], "o"), (route.points[-1:], "^")):
-            axes.plot(*point[:, :2].T, marker, color=color, markersize=9, markeredgecolor="white")
+        axes.plot(*route.points[:, :2].T, color=color, linestyle=line, linewidth=2, label=label_of(route))
+        signs += [(name, tuple(place[:2]), color) for name, place in signs_of(route).items()]
+    for number, (name, place, color) in enumerate(signs):
+        above = sum(place == other for _, other, _ in signs[number + 1 :])  # the lower one is larger, and shows
+        look = {"markeredgecolor": "white"} | SIGNS[name] | {"markersize": 9 + 4 * above, "linestyle": ""}
+        if name == "goal not reached":
+            look["markeredgecolor"] = color
+        axes.plot(*place, color=color, zorder=3, **look)
+    for name in SIGNS:
+        if any(name == one for one, _, _ in signs):
+            axes.plot([], [], linestyle="", color=BLACK, markersize=7, label=name, **SIGNS[name])
     if axes.get_legend_handles_labels()[0]:
-        axes.figure.legend(loc="outside lower center", fontsize=8)
+        axes.figure.legend(loc="outside lower center", fontsize=8, ncols=2, handlelength=3.5)
+
+
+def signs_of(route: Route) -> dict[str, np.ndarray]:
+    """Where a route begins and ends, (3,) each [m], by name."""
+    places = {}
+    if len(route.points):
+        places = {"start": route.points[0], "goal" if route.reached else "stopped": route.points[-1]}
+    if not route.reached and route.info.get("goal") is not None:
+        places["goal not reached"] = np.asarray(route.info["goal"], dtype=float)
+    return places
 
 
 def label_of(route: Route) -> str:
@@ -194,6 +224,11 @@ def label_of(route: Route) -> str:
 def plain(name: str) -> str:
     """A name as matplotlib is to show it: no TeX in it, and no underscore first, which would hide it in legends."""
     return name.replace("$", r"\$").replace("_", "\u200b_", 1 if name.startswith("_") else 0)
+
+
+def titled(name: str) -> str:
+    """A name as it begins a title."""
+    return plain(name[:1].upper() + name[1:])
 
 
 def finished(figure: Figure) -> Figure:

@@ -177,7 +177,7 @@ def page_of(drawing: Drawing, motion: dict[str, Any], still: bytes, words: str) 
     """The whole page."""
     player, window = files("uavlab.scene").joinpath("player"), record(drawing)
     return player.joinpath("page.html").read_text("utf-8").format(
-        title=html.escape(drawing.title),
+        title=html.escape(drawing.title[:1].upper() + drawing.title[1:]),
         style=player.joinpath("page.css").read_text("utf-8"),
         words=html.escape(words),
         still=base64.b64encode(still).decode(),

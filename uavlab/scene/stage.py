@@ -8,6 +8,7 @@ from matplotlib.colors import to_rgb
 
 from uavlab.city import City
 from uavlab.plot.colors import SEQUENTIAL
+from uavlab.plot.flights import WIND_COLOR
 from uavlab.plot.ground import (
     LAND_COLOR,
     MOST_QUADS,
@@ -33,7 +34,6 @@ LEVEL_COLOR = "#E9E9E4"
 GRID_COLOR = "#B8B8B0"
 EDGE_COLOR = "#555555"
 VOXEL_COLOR = "#B0C4DE"
-WIND_COLOR = "#3B6E8F"
 THIN = 0.25
 """Sheets that are thinner [m] are drawn once, not from both sides; edges shorter than four times it aren't drawn."""
 MOST_TRIANGLES = 20_000

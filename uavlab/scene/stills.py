@@ -20,7 +20,7 @@ from uavlab.city import City
 from uavlab.flight import Flight
 from uavlab.plot.colors import SEQUENTIAL
 from uavlab.plot.maps import RISK_LABEL
-from uavlab.plot.style import DPI, Drawn, finished, plain
+from uavlab.plot.style import DPI, Drawn, finished, plain, titled
 from uavlab.risk import RiskMap
 from uavlab.scene.camera import DIRECTIONS, FIELD_OF_VIEW_DEG, Camera, View, chasing, checked_camera, fitted
 from uavlab.scene.content import MOST_NAMED, drawing_of
@@ -132,7 +132,7 @@ def picture_of(drawing: Drawing, camera: Camera, moment: float, size: float) -> 
     axes.imshow(frame.picture(), interpolation="none")
     axes.set_axis_off()
     axes.autoscale(False)
-    axes.set_title(plain(drawing.title), fontsize=11)
+    axes.set_title(titled(drawing.title), fontsize=11)
     draw_signs(axes, frame, drawing, moment)
     draw_compass(axes, frame, view, drawing)
     scale: Normalize | None = None
