@@ -25,6 +25,7 @@ from uavlab.plot.colors import (
 from uavlab.plot.curves import corner, curve_profile
 from uavlab.plot.flights import crash_rates, in_flight, safety_domain, tracks
 from uavlab.plot.maps import RISK_LABEL, expansions, field, ground_risk, layers, plan, risk, risk_norm, section
+from uavlab.plot.sliders import Sliders, sliders
 from uavlab.plot.station import ground_station
 from uavlab.plot.stills import still
 from uavlab.plot.style import (
@@ -50,6 +51,7 @@ __all__ = [
     "SKY",
     "YELLOW",
     "Drawn",
+    "Sliders",
     "Style",
     "bars",
     "convergence",
@@ -73,6 +75,7 @@ __all__ = [
     "route_colors",
     "safety_domain",
     "section",
+    "sliders",
     "still",
     "styles",
     "tracks",
