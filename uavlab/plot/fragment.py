@@ -49,6 +49,8 @@ def alternative(title: str, scales: Sequence[Scale], at: Sequence[int]) -> str:
 def fragment(title: str, scales: Sequence[Scale], at: Sequence[int], pictures: Pictures) -> str:
     """The piece of HTML; `at` is the number of the value that each slider has first."""
     width, height = pictures.size
+    label_room = min(24, max(len(scale.label) for scale in scales))
+    word_room = min(24, max(len(word) for scale in scales for word in scale.words))
     data = {
         "title": title,
         "scales": [{"label": scale.label, "words": scale.words} for scale in scales],
@@ -58,10 +60,10 @@ def fragment(title: str, scales: Sequence[Scale], at: Sequence[int], pictures: P
     }
     return FRAGMENT.format(
         title=html.escape(title),
-        keys=KEYS,
         style=STYLE,
         width=width,
         height=height,
+        room=f"--label:{label_room}ch;--word:{word_room}ch",
         rows="\n".join(row(scale, i) for scale, i in zip(scales, at, strict=True)),
         still=encoded(pictures.still),
         alt=html.escape(alternative(title, scales, at)),
@@ -72,11 +74,11 @@ def fragment(title: str, scales: Sequence[Scale], at: Sequence[int], pictures: P
 
 def row(scale: Scale, i: int) -> str:
     """A slider with its label on the left and its value on the right."""
-    word, room = html.escape(scale.words[i]), min(20, max(map(len, scale.words)))
+    word = html.escape(scale.words[i])
     return (
         f'<div><label><span>{html.escape(scale.label)}</span><input type="range" min="0" max="{len(scale.words) - 1}" '
         f'step="1" value="{i}" aria-valuetext="{word}" autocomplete="off"></label>'
-        f'<output aria-live="off" style="min-width:{room}ch">{word}</output></div>'
+        f'<output aria-live="off">{word}</output></div>'
     )
 
 
@@ -84,11 +86,8 @@ def encoded(content: bytes) -> str:
     return base64.b64encode(content).decode()
 
 
-KEYS = 'data-lm-suppress-shortcuts="yes"'
-"""Else JupyterLab takes the arrow keys, and goes to another cell."""
-
 FRAGMENT = """\
-<div class="uavlab-sliders" role="group" aria-label="{title}" style="max-width:{width}px" {keys}>
+<div class="uavlab-sliders" role="group" aria-label="{title}" style="width:{width}px;max-width:100%;{room}">
 <style>{style}</style>
 <div class="uavlab-rows" hidden>
 {rows}
@@ -100,14 +99,20 @@ FRAGMENT = """\
 </div>"""
 
 STYLE = """
+.uavlab-sliders{container-type:inline-size}
 .uavlab-sliders .uavlab-rows{padding:2px 0 6px}
 .uavlab-sliders .uavlab-rows[hidden]{display:none}
 .uavlab-sliders .uavlab-rows div,.uavlab-sliders label{display:flex;align-items:center;gap:0 12px}
-.uavlab-sliders label{flex:1;flex-wrap:wrap;min-width:0;margin:0}
-.uavlab-sliders label span{flex:0 1 9em}
-.uavlab-sliders input{flex:1 1 10em;min-width:0;height:28px;margin:0;accent-color:#0072b2;cursor:pointer}
-.uavlab-sliders output{white-space:nowrap;font-variant-numeric:tabular-nums}
+.uavlab-sliders label{flex:1;min-width:0;margin:0}
+.uavlab-sliders label span{flex:0 0 var(--label)}
+.uavlab-sliders input{flex:1;min-width:0;height:28px;margin:0;accent-color:#0072b2;cursor:pointer}
+.uavlab-sliders output{flex:0 0 var(--word);line-height:28px;font-variant-numeric:tabular-nums}
 .uavlab-sliders img,.uavlab-sliders canvas{display:block;max-width:100%;height:auto;background:#fff}
+@container (max-width:480px){
+.uavlab-sliders .uavlab-rows div{align-items:end}
+.uavlab-sliders label{flex-wrap:wrap}
+.uavlab-sliders label span,.uavlab-sliders input{flex:1 0 100%}
+}
 """
 
 SCRIPT = """
@@ -149,7 +154,12 @@ for (const root of document.querySelectorAll(".uavlab-sliders:not([data-live])")
   canvas.setAttribute("role", "img");
   root.querySelector("p").remove();
   root.querySelector(".uavlab-rows").hidden = false;
-  inputs.forEach(input => input.addEventListener("input", show));
+  for (const input of inputs) {
+    input.addEventListener("input", show);
+    input.addEventListener("keydown", event => {  // else JupyterLab takes it, too, and goes to another cell
+      if (/^(Arrow|Home|End|Page)/.test(event.key) && !event.ctrlKey && !event.metaKey) event.stopPropagation();
+    });
+  }
   show();
 }
 """
