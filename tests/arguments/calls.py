@@ -77,6 +77,7 @@ from things import (
     zone_file,
 )
 
+from uavlab import plot
 from uavlab.city import City, Place
 from uavlab.flight import Autopilot, Gps, Rate
 from uavlab.mavlink import connect, follow, go_home, land, start
@@ -95,9 +96,9 @@ MADE_BY_THE_LIBRARY = {
     "city.Source", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights", "flight.Rate",
     "mavlink.CommandDeniedError", "mavlink.Link", "mavlink.MissionRejectedError", "mavlink.Telemetry", "mission.Check",
     "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "power.Power",
-    "prediction.Dataset", "resilience.Change", "risk.Fall", "scene.Scene", "spline.Feasibility", "spline.Limit",
-    "vehicle.DataSheet", "vehicle_sim.SimulatedVehicle", "weather.DrydenParameters", "weather.ReferenceWind",
-    "weather.WeatherRecord",
+    "plot.Sliders", "prediction.Dataset", "resilience.Change", "risk.Fall", "scene.Scene", "spline.Feasibility",
+    "spline.Limit", "vehicle.DataSheet", "vehicle_sim.SimulatedVehicle", "weather.DrydenParameters",
+    "weather.ReferenceWind", "weather.WeatherRecord",
 }  # fmt: skip
 """Results: nobody else makes them, so that their making needs no checks. Their methods do, and who takes them."""
 
@@ -144,6 +145,10 @@ def mean(values, axis):
 
 def class_three(dataset):
     return np.full(np.count_nonzero(~dataset.train), 3)
+
+
+def one_bar(wind):
+    return plot.bars({"a": wind}, "wind [m/s]")
 
 
 def planned(**more):
@@ -517,6 +522,10 @@ CALLS = {
     "plot.section": lambda: {
         "city": TOWN, "height": 2.5, "values": PRICES, "routes": (LINE,), "label": "price [1]",
         "norm": colors.Normalize(0.0, 2.0),
+    },
+    "plot.sliders": lambda: {
+        "draw": one_bar, "title": "a bar", "labels": {"wind": "wind [m/s]"}, "start": {"wind": 3.0}, "jobs": 1,
+        "progress": False, "values": {"wind": [1.0, 3.0]},
     },
     "plot.still": lambda: drawn(risk=RISK, flights=[FLIGHT], elevation_deg=32.0, azimuth_deg=-60.0),
     "plot.tracks": lambda: {

@@ -138,6 +138,7 @@ RIGHTFUL = {
     "optimizers.bas.start": {"deeper"},  # one point as a row of several
     "optimizers.pso.start": {"deeper"},
     "optimizers.pso_bas.start": {"deeper"},
+    "plot.sliders.labels": {"a word inside"},  # is one
     "plot.bars.values": {"NaN inside"},  # has no bar, such as the clearance of a route that doesn't arrive
 }
 """Mistakes that are none, by function and parameter."""

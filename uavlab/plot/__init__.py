@@ -2,7 +2,7 @@
 
 Every function returns a `Figure`: the last line of a notebook's cell shows it, `figure.savefig("name.png")` writes it.
 Colours are those of Okabe and Ito, or of a map that is even in lightness, so that colour-blind readers can tell them
-apart.
+apart. `sliders` makes one figure of many, with sliders that need no kernel.
 """
 
 from uavlab.plot.charts import bars, convergence, front, profile
