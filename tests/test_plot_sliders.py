@@ -135,13 +135,15 @@ def test_photos_keep_their_commonest_colours_and_no_colour_is_far_away():
     plt.close("all")
 
 
-def test_colours_of_a_figure_without_paper_are_those_on_white():
+def test_what_can_be_seen_through_is_seen_on_white():
     def clear(a):
         figure = bar(a)
-        figure.patch.set_alpha(0.0)
+        figure.patch.set_facecolor((1.0, 0.0, 0.0, 0.0 if a == 1 else 0.5))
         return figure
 
-    assert (pixels(sliders(clear, a=[1, 2]).frames[0])[0, 0] == 255).all()
+    frames = [pixels(frame) for frame in sliders(clear, a=[1, 2]).frames]
+    assert frames[0][0, 0].tolist() == [255, 255, 255]
+    assert frames[1][0, 0].tolist() == pytest.approx([255, 128, 128], abs=1)
 
 
 @pytest.mark.parametrize("jobs", [1, 2, None])
@@ -432,6 +434,7 @@ MANY = range(21)
         ({"labels": "wind"}, "labels must be str by name"),
         ({"start": {"load": 3}}, "start names 'load', which is no slider: wind"),
         ({"start": {"wind": 4}}, r"start\['wind'\] must be one of 0, 3, 6, 9, got 4"),
+        ({"start": {"wind": 10**400}}, r"start\['wind'\] must be a number"),
         ({"start": {"wind": "3"}}, r"start\['wind'\] must be one of"),
         ({"start": {"wind": False}}, r"start\['wind'\] must be one of"),
         ({"start": [3]}, "start must be something by name"),

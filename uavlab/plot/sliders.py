@@ -243,6 +243,8 @@ def positions(scales: Sequence[Scale], start: Mapping[str, Any]) -> list[int]:
     at = []
     for scale in scales:
         wanted = start.get(scale.name, scale.values[0])
+        if isinstance(wanted, int | float | np.number):
+            checks.number(f"start[{scale.name!r}]", wanted, checks.finite)
         found = [i for i, value in enumerate(scale.values) if is_same(value, wanted)]
         if not found:
             known = ", ".join(map(repr, scale.values))
@@ -287,7 +289,7 @@ def all_drawn(
     """A PNG for each case; the first is drawn here, and the others where it is sooner done."""
     began = time.perf_counter()
     picture = drawn(draw, cases[first])
-    if jobs != 1 and (time.perf_counter() - began) * len(cases) < QUICK:
+    if (time.perf_counter() - began) * len(cases) < QUICK:
         jobs = 1
     settings: Any = {name: value for name, value in dict.items(matplotlib.rcParams) if "backend" not in name}
     others = [
