@@ -14,6 +14,9 @@ import numpy.typing as npt
 MOST = 10**9
 """What is counted to more than this never ends."""
 
+MOST_JOBS = 10_000
+"""Processes; what is beyond is a mistake."""
+
 NO_NUMBERS = {"U": "text", "S": "text", "c": "complex numbers", "M": "dates", "m": "times", "V": "records"}
 """By NumPy's kinds of arrays; from some of them it would make numbers."""
 
@@ -66,6 +69,16 @@ def whole(name: str, value: int, least: int, most: int = MOST) -> int:
     if value > most:
         raise ValueError(
             f"{name} must be at most {most:,}, or it never ends, got {Decimal(int(value)).normalize():.3g}"
+        )
+    return int(value)
+
+
+def processes(name: str, value: int) -> int:
+    """A number of processes, as joblib takes it."""
+    known = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not (known and 0 < abs(value) <= MOST_JOBS):
+        raise ValueError(
+            f"{name} must be a number of processes, or −1 for one per core, got {value!r:.60}; at most {MOST_JOBS:,}"
         )
     return int(value)
 

@@ -115,7 +115,7 @@ def report(
                 uav=premises.uav,
                 colors=colors,
             )
-        ),  # fmt: skip
+        ),
         profile=f'<img alt="height and clearance along the route" src="data:image/svg+xml;base64,{drawing}">',
         rows=rows,
         limits=limits,

@@ -7,7 +7,6 @@ results don't depend on it, because each case brings its own seed.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from numbers import Integral
 from typing import Any
 
 import joblib
@@ -15,9 +14,6 @@ import numpy as np
 from tqdm import tqdm
 
 from uavlab import checks
-
-MOST_JOBS = 10_000
-"""Processes; what is beyond is a mistake."""
 
 
 def sweep(
@@ -70,11 +66,8 @@ def sweep(
     """
     if not callable(function):
         raise ValueError(f"function must be a function, called with a case's keyword arguments, got {function!r:.60}")
-    whole = isinstance(jobs, Integral) and not isinstance(jobs, bool)
-    if jobs is not None and not (whole and 0 < abs(jobs) <= MOST_JOBS):
-        raise ValueError(
-            f"jobs must be a number of processes, or −1 for one per core, got {jobs!r:.60}; at most {MOST_JOBS:,}"
-        )
+    if jobs is not None:
+        jobs = checks.processes("jobs", jobs)
     checks.flag("progress", progress)
     checks.text("unit", unit)
     cases = checks.several("cases", cases, Mapping, least=0)

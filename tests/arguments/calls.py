@@ -78,6 +78,7 @@ from things import (
     zone_file,
 )
 
+from uavlab import plot
 from uavlab.city import City, Place
 from uavlab.flight import Autopilot, Gps, Rate
 from uavlab.mavlink import connect, follow, go_home, land, start
@@ -95,7 +96,7 @@ MODULES = ("route", "vehicle", "power", "resilience", "statistics", "sweep")
 MADE_BY_THE_LIBRARY = {
     "city.Source", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights", "flight.Rate",
     "mavlink.CommandDeniedError", "mavlink.Link", "mavlink.MissionRejectedError", "mavlink.Telemetry", "mission.Check",
-    "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "plot.Style", "power.Power",
+    "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "plot.Sliders", "plot.Style", "power.Power",
     "prediction.Dataset", "resilience.Change", "risk.Fall", "scene.Scene", "spline.Feasibility", "spline.Limit",
     "vehicle.DataSheet", "vehicle_sim.SimulatedVehicle", "weather.DrydenParameters", "weather.ReferenceWind",
     "weather.WeatherRecord",
@@ -158,6 +159,10 @@ def mean(values, axis):
 
 def class_three(dataset):
     return np.full(np.count_nonzero(~dataset.train), 3)
+
+
+def one_bar(wind):
+    return plot.bars({"a": wind}, "wind [m/s]")
 
 
 def planned(**more):
@@ -588,6 +593,10 @@ CALLS = {
     "plot.section": lambda: {
         "city": TOWN, "height": 2.5, "values": PRICES, "routes": (LINE,), "label": "price [1]",
         "norm": colors.Normalize(0.0, 2.0), **colored(),
+    },
+    "plot.sliders": lambda: {
+        "draw": one_bar, "title": "a bar", "labels": {"wind": "wind [m/s]"}, "start": {"wind": 3.0}, "jobs": 1,
+        "progress": False, "values": {"wind": [1.0, 3.0]},
     },
     "plot.tracks": lambda: {
         "city": TOWN, "flights": {"a": [FLIGHT]}, "routes": {"a": LINE}, "area": (0.0, 12.0, 0.0, 12.0),

@@ -232,6 +232,8 @@ def digest(result: Any) -> Any:
         return np.asarray(result)
     if hasattr(result, "page"):  # a scene
         return {"page": result.page, "height": digest(result.height)}
+    if hasattr(result, "html"):  # a figure with sliders
+        return {"html": result.html, "alt": result.alt}
     if type(result).__module__.startswith(("scipy.stats", "uavlab")) and hasattr(result, "cdf"):
         return digest([result.mean(), result.std(), result.cdf(1.0)])
     return type(result).__name__

@@ -2,7 +2,7 @@
 
 Every function returns a `Figure`: the last line of a notebook's cell shows it, `figure.savefig("name.png")` writes it.
 Colours are those of Okabe and Ito, or of a map that is even in lightness, so that colour-blind readers can tell them
-apart.
+apart. `sliders` makes one figure of many, with sliders that need no kernel.
 """
 
 from uavlab.plot.charts import bars, convergence, front, profile
@@ -30,6 +30,7 @@ from uavlab.plot.panels import new_panels
 from uavlab.plot.planes import area_map, diagram, value_map
 from uavlab.plot.rows import intervals, runs
 from uavlab.plot.series import lines, points
+from uavlab.plot.sliders import Sliders, sliders
 from uavlab.plot.station import ground_station
 from uavlab.plot.style import (
     DPI,
@@ -54,6 +55,7 @@ __all__ = [
     "SKY",
     "YELLOW",
     "Drawn",
+    "Sliders",
     "Style",
     "area_map",
     "bars",
@@ -86,6 +88,7 @@ __all__ = [
     "runs",
     "safety_domain",
     "section",
+    "sliders",
     "styles",
     "tracks",
     "value_map",
