@@ -96,7 +96,8 @@ MODULES = ("route", "vehicle", "power", "resilience", "statistics", "sweep")
 MADE_BY_THE_LIBRARY = {
     "city.Source", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights", "flight.Rate",
     "mavlink.CommandDeniedError", "mavlink.Link", "mavlink.MissionRejectedError", "mavlink.Telemetry", "mission.Check",
-    "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "plot.Sliders", "plot.Style", "power.Power",
+    "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "plot.Sliders",
+    "plot.Style", "power.Power",
     "prediction.Dataset", "resilience.Change", "risk.Fall", "scene.Scene", "spline.Feasibility", "spline.Limit",
     "vehicle.DataSheet", "vehicle_sim.SimulatedVehicle", "weather.DrydenParameters", "weather.ReferenceWind",
     "weather.WeatherRecord",
@@ -541,7 +542,9 @@ CALLS = {
         "city": TOWN, "curves": (CURVE,), "center": (2.5, 9.5, 2.5), "reach": 4.0, "uav_diameter": 0.5, "route": LINE,
     },
     "plot.crash_rates": lambda: {"rates": {"calm": {"A*": Rate(1.0, 0.5, 2.0)}}, "least": 0.0625, **colored()},
-    "plot.curve_profile": lambda: {"curves": (CURVE,), "speed": 5.0, "cell": 1.0, "bank": 0.5, "max_pitch": 1.0, **colored()},
+    "plot.curve_profile": lambda: {
+        "curves": (CURVE,), "speed": 5.0, "cell": 1.0, "bank": 0.5, "max_pitch": 1.0, **colored(),
+    },
     "plot.diagram": lambda: {
         "x_label": "x [m]", "y_label": "y [m]", "areas": {"wall": SQUARE}, "arrows": {"wind": [[1.0, 2.0], [3.0, 4.0]]},
         "x_range": (0.0, 12.0), "y_range": (0.0, 12.0), **marked(),

@@ -145,8 +145,8 @@ def convergence(
     >>> ants = {"ants": ant_colony}
     >>> comparison = compare_planners(ants, reference_campus(), seeds=range(2), budget=200, progress=False)
     >>> figure = plot.convergence(comparison)
-    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
-    ('evaluations made', 'gap to the exact optimum\n(linear to 10 %, logarithmic beyond)')
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_yscale()
+    ('evaluations made', 'symlog')
     """
     checks.instance("comparison", comparison, Comparison)
     checks.one_of("by", by, ("evaluations", "iterations"))
@@ -166,29 +166,32 @@ def convergence(
                   linewidth=2, label=plain(name))  # fmt: skip
         axes.fill_between(effort[shown], finite_or_nan(low)[shown], finite_or_nan(high)[shown], color=color, alpha=0.13,
                           linewidth=0)  # fmt: skip
-        for edge in (low, high):
-            axes.plot(effort[shown], finite_or_nan(edge)[shown], color=color, linewidth=0.5, alpha=0.5)
     if not any(np.isfinite(line.get_ydata()).any() for line in axes.lines):
         raise ValueError("comparison must have a planner with a route in half of its runs, to have a median gap")
     axes.axhline(0.0, color="0.4", linewidth=1)
     axes.annotate("exact optimum on the grid", (0.99, 0.0), (0, -3), xycoords=("axes fraction", "data"),
                   textcoords="offset points", ha="right", va="top", fontsize=8, color="0.3")  # fmt: skip
+    set_gap_scale(axes, f"{by} made")
+    axes.legend(title="median, band: quartiles", title_fontsize=8, fontsize=8, loc="upper left",
+                bbox_to_anchor=(1.0, 1.0), handlelength=4.5)  # fmt: skip
+    return finished(figure)
+
+
+def set_gap_scale(axes: Axes, label: str) -> None:
+    """A gap in per cent up, linear near 0 and logarithmic beyond; the last of its lines marks the optimum."""
     axes.set_yscale("symlog", linthresh=10.0, linscale=1.0)
     axes.set_yticks([-10, -5, 0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000], minor=False)
     axes.yaxis.set_major_formatter("{x:g} %")
     axes.yaxis.set_minor_locator(NullLocator())
     effort, gaps = np.concatenate([line.get_xydata() for line in axes.lines[:-1]]).T
     axes.set(
-        xlabel=f"{by} made",
+        xlabel=label,
         ylabel="gap to the exact optimum\n(linear to 10 %, logarithmic beyond)",
         xlim=(0, effort.max()),
     )
     axes.set_ylim(min(-2.0, 1.2 * np.nanmin(gaps)), max(12.0, 1.5 * np.nanmax(gaps)))
     axes.xaxis.set_major_formatter("{x:,g}")
     axes.grid(alpha=0.3)
-    axes.legend(title="median, band: quartiles", title_fontsize=8, fontsize=8, loc="upper left",
-                bbox_to_anchor=(1.0, 1.0), handlelength=4.5)  # fmt: skip
-    return finished(figure)
 
 
 def finite_or_nan(values: np.ndarray) -> np.ndarray:

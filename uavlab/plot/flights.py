@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -306,17 +306,20 @@ def in_flight(flights: Mapping[str, Flight], *, colors: Mapping[str, str] | None
         panels[2].annotate(plain(name), (0.995, limit), (0, 1), xycoords=("axes fraction", "data"),
                            textcoords="offset points", ha="right", va="bottom", fontsize=8, color="0.3")  # fmt: skip
     panels[2].margins(y=0.12)
-    corners = [(moment, look.color) for flight, look in zip(flown.values(), looks, strict=True)
-               for moment in corner_times(flight)]  # fmt: skip
-    for number, (moment, color) in enumerate(corners):
-        panels[0].axvline(
-            moment, color=color, linewidth=0.7, alpha=0.5, label="_" * bool(number) + "corner of the route"
-        )
+    mark_corners(panels[0], flown.values(), [look.color for look in looks])
     panels[0].axhline(0.0, color="0.4", linewidth=1)
     panels[1].set_ylim(bottom=0.0)
     panels[2].set(xlabel="time in flight [s]", xlim=(0, max(flight.duration for flight in flown.values())))
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=8)
     return finished(figure)
+
+
+def mark_corners(axes: Axes, flights: Iterable[Flight], colors: Sequence[str]) -> None:
+    """A thin line over time wherever a flight passes a corner of its route, with one entry in the legend."""
+    passed = [(moment, color) for flight, color in zip(flights, colors, strict=True) for moment in corner_times(flight)]
+    for number, (moment, color) in enumerate(passed):
+        label = "_" * bool(number) + "corner of the route"
+        axes.axvline(moment, color=color, linewidth=0.7, alpha=0.5, label=label)
 
 
 def corner_times(flight: Flight) -> np.ndarray:
