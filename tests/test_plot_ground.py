@@ -12,9 +12,9 @@ from uavlab.flight import OffsetProcess, fly
 from uavlab.planners import astar
 from uavlab.plot import ground
 from uavlab.plot.ground import CUT_COLOR, ground_lattice, height_label, height_words, zone_label, zone_surface
-from uavlab.plot.stills import layer_triangles, voxel_surface
 from uavlab.risk import RiskMap
 from uavlab.route import Route
+from uavlab.scene.stage import voxel_surface
 from uavlab.spline import Curve
 from uavlab.vehicle import LIGHT_QUADROTOR
 
@@ -65,7 +65,7 @@ def test_section_tells_the_ground_from_buildings(hill, over):
     assert not cut[hill.ground < level - 8].any()
     assert np.array_equal(cut | house, hill.occupied[:, :, 6] | house)
     assert brown(plot.section(hill, 1.0).axes[0])[house].all()  # its cellar lies in the hill
-    assert axes.get_title() == "hill, z = 21 m, up to 21 m above the ground\n(buildings black, ground brown)"
+    assert axes.get_title() == "Hill, z = 21 m, up to 21 m above the ground\n(buildings black, ground brown)"
     hatched = [drawn for drawn in axes.collections if getattr(drawn, "hatches", None)]
     assert hatched  # told apart from black without colours, too
 
@@ -98,7 +98,7 @@ def test_heights_over_level_ground_are_counted_from_it():
     level = City(np.zeros(shape, dtype=bool), 5.0, origin=(0, 0, 95), ground=np.full((6, 6), 100.0))
     way = Route([(2, 2, 104), (25, 25, 120)])
     for city in (open_floor, level):
-        assert plot.section(city, 104.0).axes[0].get_title().startswith("city, 4 m above the ground (")
+        assert plot.section(city, 104.0).axes[0].get_title().startswith("City, 4 m above the ground (")
         above = plot.profile(city, way).axes[0]
         assert above.lines[0].get_ydata() == pytest.approx([4.0, 20.0])
         assert above.get_ylabel() == "height above the ground [m]"
@@ -115,7 +115,7 @@ def test_plan_shows_how_high_buildings_are_above_the_ground_and_how_high_that_is
     assert tops[6, 14] == pytest.approx(16.0 - hill.ground[6, 14])
     assert tops[16, 22] == pytest.approx(28.0 - hill.ground[16, 22])
     expected = ["height z of the ground [m]", "no-fly zones: school, church", f"A*, {over.length:.1f} m"]
-    assert legend_of(figure) == expected
+    assert legend_of(figure) == [*expected, "start", "goal"]
     levels = {float(text.get_text()) for text in axes.texts}
     assert levels
     assert levels <= set(range(0, 40, 5))
@@ -217,7 +217,6 @@ def test_zone_beside_the_map_is_not_named():
     city = City(np.zeros((9, 9, 9), dtype=bool), 2.0, no_fly=(away,))
     assert not plot.plan(city).legends
     assert len(zone_surface(city)[0]) == 0
-    assert plot.still(city).axes[0].get_legend() is None
 
 
 def test_lattice_has_the_heights_of_the_ground_at_the_columns_corners(hill):
@@ -231,41 +230,11 @@ def test_lattice_has_the_heights_of_the_ground_at_the_columns_corners(hill):
     assert np.allclose(hill.height_above_ground(thin), 0.0)
 
 
-def test_layers_lie_on_the_ground_when_they_get_its_heights(hill):
-    heights = ground_lattice(hill, 50)[..., 2]
-    layer = layer_triangles(hill, heights)
-    assert layer.shape == (50 * 30, 2, 3, 3)
-    assert np.allclose(hill.height_above_ground(layer), 0.0)
-    assert np.array_equal(layer[..., :2], layer_triangles(hill, 7)[..., :2])
-    normals = np.cross(layer[..., 1, :] - layer[..., 0, :], layer[..., 2, :] - layer[..., 0, :])
-    assert (normals[..., 2] > 0).all()
-
-
-def test_still_shows_the_hill_and_the_zones_with_one_entry_each(hill, over):
-    axes = plot.still(hill, over).axes[0]
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
-        "no-fly zones: school, church",
-        f"A*, {over.length:.1f} m",
-    ]
-    bare = City(hill.occupied, hill.cell, hill.origin, hill.buildings, "bare", None, hill.ground)
-    tones = np.concatenate([drawn.get_facecolor()[:, :3] for drawn in plot.still(bare).axes[0].collections])
-    land = tones[np.ptp(tones, axis=1) < 0.1]  # houses are blue
-    assert len(land) == 2 * 50 * 30
-    assert np.ptp(land[:, 0]) > 0.3  # a slope in the light and one in the shade
-    painted = plot.still(bare, risk=RiskMap(bare, 1e-3, 0.5)).axes[0].collections
-    tones = np.concatenate([drawn.get_facecolor() for drawn in painted])
-    assert len(tones) == len(np.concatenate([d.get_facecolor() for d in plot.still(bare).axes[0].collections]))
-    first, rest = painted  # what is beside houses, and what a hill may hide
-    assert 0 < len(first.get_facecolor()) < 2 * 50 * 30 < len(rest.get_facecolor())
-
-
 def test_bare_ground_can_be_drawn(hill):
     bare = City(np.zeros((9, 1, 5), dtype=bool), 2.0, ground=np.linspace(0, 4, 9)[:, None])
     for city in (bare, City(np.zeros((9, 9, 5), dtype=bool), 2.0, ground=np.ones((9, 9)))):
         risk = RiskMap(city, 1e-3, 0.5)
         for figure in (
-            plot.still(city),
-            plot.still(city, risk=risk),
             plot.plan(city),
             plot.section(city, 3.0),
             plot.risk(risk, 3.0),
@@ -284,7 +253,6 @@ def test_names_are_shown_as_they_are(hill, over, name):
         plot.plan(city, route),
         plot.section(city, 21.0, None, route),
         plot.profile(city, route),
-        plot.still(city, route, flights={name: flight}),
         plot.tracks(city, {name: [flight]}, {name: route}),
         plot.in_flight({name: flight}, **{name: 20.0}),
         plot.curve_profile(curve, speed=8.0, cell=5.0),
@@ -295,7 +263,7 @@ def test_names_are_shown_as_they_are(hill, over, name):
     ]
     for figure in figures:
         figure.canvas.draw()
-    shown = legend_of(figures[0])[-1].replace("\\$", "$").replace("\u200b", "")
+    shown = legend_of(figures[0])[-3].replace("\\$", "$").replace("\u200b", "")
     assert shown == f"{name}, {route.length:.1f} m"
     assert name in legend_of(figures[0])[1].replace("\\$", "$")
 
@@ -304,6 +272,5 @@ def test_names_are_shown_as_they_are(hill, over, name):
 def test_numbers_of_any_kind_are_taken(hill, over, kind):
     assert plot.section(hill, kind(20)).axes[0].get_title() == plot.section(hill, 20.0).axes[0].get_title()
     assert plot.profile(hill, over, safe_distance=kind(3)).axes[1].texts[0].get_text() == "to keep: 3 m"
-    assert plot.still(hill, elevation_deg=kind(30), azimuth_deg=kind(-50)).axes
     with pytest.raises(ValueError, match="safe_distance must be finite and above 0, got -3"):
         plot.profile(hill, over, safe_distance=kind(-3))

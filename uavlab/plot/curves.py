@@ -114,7 +114,7 @@ def curve_profile(
         (below, -np.degrees(max_pitch), "", "center"),
     )
     for axes, limit, text, side in limits:
-        axes.axhline(limit, color="0.3", linestyle="--", linewidth=1)
+        axes.axhline(limit, color="0.3", linewidth=1)
         axes.annotate(text, (1.01, limit), xycoords=("axes fraction", "data"), va=side, fontsize=8, color="0.3")
     above.set(ylabel="curvature κ [1/m]", ylim=(0, highest))
     below.set(xlabel="distance flown [m]", ylabel="pitch [°]")
