@@ -152,9 +152,7 @@ def checked_colors(colors: Mapping[str, str] | None) -> dict[str, str]:
         raise ValueError(f"colors must be colours by name, as in {{'A*': '#0072B2'}}, got {colors!r:.60}")
     for name, color in colors.items():
         if not isinstance(name, str) or not is_color_like(color):
-            raise ValueError(
-                f"colors[{name!r:.40}] must be a colour of matplotlib, such as '#0072B2', got {color!r:.40}"
-            )
+            raise ValueError(f"colors[{name!r:.40}] must be a colour, such as plot.BLUE, got {color!r:.40}")
     return {name: to_hex(color).upper() for name, color in colors.items()}
 
 
