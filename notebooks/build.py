@@ -7,6 +7,7 @@ taken out. `--check` changes nothing and fails if anything is stale.
 """
 
 import argparse
+import base64
 import re
 import sys
 from pathlib import Path
@@ -15,6 +16,8 @@ import jupytext
 import nbformat
 from nbclient import NotebookClient
 from nbformat import NotebookNode
+
+from uavlab.plot.pictures import quantised
 
 HERE = Path(__file__).resolve().parent
 SOURCES = HERE / "src"
@@ -77,6 +80,8 @@ def staleness(source: Path) -> str:
         return "not run from top to bottom"
     if any(output.output_type == "error" for cell in code for output in cell.outputs):
         return "a cell failed"
+    if any(is_silent(output) for cell in code for output in cell.outputs):
+        return "a picture has no alternative text"
     if path.read_text(encoding="utf-8") != text_of(stripped(notebook)):
         return "has outputs or metadata that don't belong"
     if is_solution(source):
@@ -125,15 +130,29 @@ def stripped(notebook: NotebookNode) -> NotebookNode:
 
 
 def kept(output: NotebookNode) -> NotebookNode | None:
-    """An output as it is stored: scenes as their still picture, sliders and warnings not at all."""
+    """An output as it is stored: scenes and sliders as their still picture, pictures small, warnings not at all."""
     if output.output_type == "stream" and output.name == "stderr":
         return None
     data = output.get("data", {})
     if "application/vnd.jupyter.widget-view+json" in data:
         return None
-    if "uavlab-scene" in data.get("text/html", ""):
+    if is_live(output):
         del data["text/html"]
+    if "image/png" in data:
+        small = quantised(base64.b64decode(data["image/png"]))
+        data["image/png"] = base64.b64encode(small).decode()
     return output
+
+
+def is_live(output: NotebookNode) -> bool:
+    """Whether an output is a page to play with; it comes back with Run All."""
+    markup = output.get("data", {}).get("text/html", "")
+    return "uavlab-scene" in markup or "uavlab-sliders" in markup
+
+
+def is_silent(output: NotebookNode) -> bool:
+    """Whether an output is a picture without words for those who don't see it."""
+    return "image/png" in output.get("data", {}) and not output.metadata.get("image/png", {}).get("alt")
 
 
 def exercise(source: Path) -> NotebookNode:

@@ -536,6 +536,7 @@ CALLS = {
     "plot.area_map": lambda: {
         "city": TOWN, "areas": {"built": TOWN.occupied[:, :, 2]}, **marked(), "area": (0.0, 12.0, 0.0, 12.0),
     },
+    "plot.alt_text": lambda: {"figure": one_bar(3.0)},
     "plot.bars": lambda: {"values": {"a": 1.0, "b": 2.0}, "label": "length [m]", "title": "bars"},
     "plot.convergence": lambda: {"comparison": COMPARISON, "by": "evaluations", "until": 5, **colored()},
     "plot.corner": lambda: {

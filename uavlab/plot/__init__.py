@@ -39,6 +39,7 @@ from uavlab.plot.style import (
     finished,
     new_figure,
 )
+from uavlab.plot.words import alt_text
 
 __all__ = [
     "BLACK",
@@ -57,6 +58,7 @@ __all__ = [
     "Drawn",
     "Sliders",
     "Style",
+    "alt_text",
     "area_map",
     "bars",
     "convergence",

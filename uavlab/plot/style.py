@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from uavlab import checks
 from uavlab.city import City
 from uavlab.plot.colors import BLACK, styles
+from uavlab.plot.pictures import Picture
 from uavlab.risk import RiskMap
 from uavlab.route import Route, Way, as_route
 
@@ -232,7 +233,7 @@ def titled(name: str) -> str:
 
 
 def finished(figure: Figure) -> Figure:
-    """The figure, closed for pyplot: a notebook shows it once, where the cell returns it.
+    """The figure, closed for pyplot: a notebook shows it once, where the cell returns it, with a text of what it shows.
 
     Parameters
     ----------
@@ -242,7 +243,7 @@ def finished(figure: Figure) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        The same one; it can still be saved.
+        The same one; it can still be saved. In a notebook its picture has the alternative text of `alt_text`.
 
     Raises
     ------
@@ -252,6 +253,7 @@ def finished(figure: Figure) -> Figure:
     See Also
     --------
     new_figure : Begins a figure.
+    alt_text : What it shows, in words.
 
     Examples
     --------
@@ -262,4 +264,6 @@ def finished(figure: Figure) -> Figure:
     """
     checks.instance("figure", figure, Figure)
     plt.close(figure)
+    if type(figure) is Figure:
+        figure.__class__ = Picture
     return figure

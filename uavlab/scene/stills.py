@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -214,15 +213,3 @@ def handle_of(entry: Entry) -> Line2D | Patch:
         return Patch(facecolor=entry.color, alpha=0.35, edgecolor=entry.color, label=label)
     line: Any = entry.style.line if entry.style else "-"
     return Line2D([], [], color=entry.color, linestyle=line, linewidth=1.5 if entry.kind == "thin" else 3, label=label)
-
-
-def png_of(figure: Figure) -> bytes:
-    """A figure as PNG with a palette: small, and the same bytes for the same figure."""
-    from PIL import Image
-
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=DPI)
-    picture = Image.open(buffer).convert("RGB").quantize(255, dither=Image.Dither.NONE)
-    buffer = io.BytesIO()
-    picture.save(buffer, format="png", optimize=True)
-    return buffer.getvalue()
