@@ -3,7 +3,8 @@
 `notebooks/src/*.py` (jupytext, py:percent) is what is edited and reviewed. `python notebooks/build.py` brings each
 `notebooks/*.ipynb` up to date and runs it in a fresh kernel; figures and printed results stay in, 3D pages are taken
 out (they come back with Run All, a still picture stands for them). Exercises are their solutions with the answers
-taken out. `--check` changes nothing and fails if anything is stale.
+taken out. `--check` changes nothing and fails if anything is stale. `--html` runs notebooks and writes them to
+`notebooks/html/` as pages that work offline, with their scenes and sliders.
 """
 
 import argparse
@@ -14,6 +15,7 @@ from pathlib import Path
 
 import jupytext
 import nbformat
+from exported import export
 from nbclient import NotebookClient
 from nbformat import NotebookNode
 
@@ -30,10 +32,15 @@ def main() -> int:
     command.add_argument("names", nargs="*", help="only these, as in 06_astar; default: all that are stale")
     command.add_argument("--all", action="store_true", help="run all of them, stale or not")
     command.add_argument("--check", action="store_true", help="only say what is stale; exit 1 if anything is")
+    command.add_argument("--html", action="store_true", help="write pages that work offline to notebooks/html/")
     options = command.parse_args()
     sources = [path for path in sorted(SOURCES.rglob("*.py")) if not options.names or path.stem in options.names]
     if not sources:
         command.error(f"no source in {SOURCES} is called {' or '.join(options.names)}")
+    if options.html:
+        for source in sources:
+            print(export(run(jupytext.read(source)), source.stem, HERE / "html"), flush=True)
+        return 0
     stale = {source: reason for source in sources if (reason := staleness(source))}
     orphans = [] if options.names else orphaned()
     if options.check:
@@ -102,6 +109,11 @@ def orphaned() -> list[Path]:
 
 def executed(notebook: NotebookNode) -> NotebookNode:
     """The notebook run from top to bottom in a fresh kernel, stripped."""
+    return stripped(run(notebook))
+
+
+def run(notebook: NotebookNode) -> NotebookNode:
+    """The notebook run from top to bottom in a fresh kernel, with all its outputs."""
     client = NotebookClient(
         notebook,
         timeout=SECONDS_PER_CELL,
@@ -110,7 +122,7 @@ def executed(notebook: NotebookNode) -> NotebookNode:
         resources={"metadata": {"path": str(HERE)}},
     )
     client.execute()
-    return stripped(notebook)
+    return notebook
 
 
 def stripped(notebook: NotebookNode) -> NotebookNode:

@@ -1,11 +1,15 @@
 """The builder: what it strips, what it calls stale, how a solution becomes an exercise."""
 
+import base64
 import importlib.util
+import io
 from pathlib import Path
 
 import jupytext
 import nbformat
 import pytest
+
+from uavlab import plot
 
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 SOURCE = '''# ---
@@ -37,6 +41,7 @@ print(double(4))
 @pytest.fixture
 def build(tmp_path, monkeypatch):
     """The builder, working on a folder with one solution of its own."""
+    monkeypatch.syspath_prepend(NOTEBOOKS)
     spec = importlib.util.spec_from_file_location("notebooks_build", NOTEBOOKS / "build.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -117,12 +122,33 @@ def test_building_twice_gives_the_same_bytes(build, tmp_path, monkeypatch):
 
 
 def test_scenes_are_kept_as_their_still_picture(build):
-    output = nbformat.v4.new_output(
-        "display_data", data={"text/html": '<div class="uavlab-scene">…</div>', "image/png": "iVBOR"}
-    )
-    assert list(build.kept(output).data) == ["image/png"]
+    figure = plot.bars({"a": 1.0}, "length [m]")
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    for kind in ("scene", "sliders"):
+        output = nbformat.v4.new_output(
+            "display_data",
+            data={
+                "text/html": f'<div class="uavlab-{kind}">…</div>',
+                "image/png": base64.b64encode(buffer.getvalue()).decode(),
+            },
+            metadata={"image/png": {"alt": "a bar"}},
+        )
+        stored = build.kept(output)
+        assert list(stored.data) == ["image/png"]
+        assert stored.metadata == {"image/png": {"alt": "a bar"}}
+        small = base64.b64decode(stored.data["image/png"])
+        assert len(small) < len(buffer.getvalue())
+        assert small[25] == 3  # a palette
     slider = nbformat.v4.new_output("display_data", data={"application/vnd.jupyter.widget-view+json": {}})
     assert build.kept(slider) is None
+
+
+def test_a_picture_without_words_is_stale(build):
+    silent = nbformat.v4.new_output("display_data", data={"image/png": "iVBOR"})
+    spoken = nbformat.v4.new_output("display_data", data={"image/png": "iVBOR"}, metadata={"image/png": {"alt": "a"}})
+    assert (build.is_silent(silent), build.is_silent(spoken)) == (True, False)
+    assert not build.is_silent(nbformat.v4.new_output("stream", text="a"))
 
 
 @pytest.mark.parametrize("source", sorted((NOTEBOOKS / "src").rglob("*.py")), ids=lambda path: path.stem)
