@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from uavlab import plot
 from uavlab.__main__ import main
 from uavlab.flight import Flights
 from uavlab.report import Premises, Trial, trial_table
@@ -27,7 +26,7 @@ def test_writes_one_page_and_says_where(tmp_path, capsys):
     assert main(["--out", str(out)]) == 0
     assert f"open {out}" in capsys.readouterr().out
     page = out.read_text(encoding="utf-8")
-    assert "A* + shortcut through Table 1" in page
+    assert "A* + shortcut through the city of REPARE Table 1" in page
     assert "srcdoc=" in page
     assert "data:image/svg+xml;base64," in page
     assert "<th>distance to keep</th><td>3.5 m</td>" in page
@@ -76,7 +75,7 @@ def test_in_too_much_wind_it_stays_on_the_ground(tmp_path, capsys):
     said = capsys.readouterr().out
     assert re.match(r"grounded: gusts: 35.0 m/s, and the thrust left over holds [\d.]+ m/s; head wind: ", said)
     page = out.read_text(encoding="utf-8")  # no older one seems to be the answer
-    assert "<h1>Grounded in Table 1</h1>" in page
+    assert "<h1>Grounded in the city of REPARE Table 1</h1>" in page
     assert rows_of(page)["grounded"].startswith("gusts: 35.0 m/s")
     assert "inf m" not in page
 
@@ -96,7 +95,7 @@ def test_planner_start_and_goal_are_taken(tmp_path, capsys):
     arguments = ["--planner", "astar", "--start", "5,5,10", "--goal", "5,5,50", "--clearance", "0", "--out", str(out)]
     assert main(arguments) == 0
     assert capsys.readouterr().out.startswith("A*: 40.0 m\n")
-    assert "A* through Table 1" in out.read_text(encoding="utf-8")
+    assert "A* through the city of REPARE Table 1" in out.read_text(encoding="utf-8")
 
 
 def test_plans_through_a_city_file(tmp_path, capsys):
@@ -395,12 +394,13 @@ def test_a_key_that_stands_twice_is_refused(tmp_path, capsys):
 
 
 def test_the_profile_has_the_colours_of_the_scene(tmp_path):
-    """Flights come after routes in the scene: the shortest route in the first colour, the flown curve in the second."""
     out = tmp_path / "route.html"
     assert main(["--city", "campus", "--flights", "2", "--out", str(out)]) == 0
     page = html.unescape(out.read_text(encoding="utf-8"))
-    named = re.findall(r'<span style="color:(#\w+)">[^<]*</span> ([^:,<]+)', page)
+    scene = dict(re.findall(r'style="color:(#\w+)"[^>]*>(?:(?!style=).)*?</svg><span>([^:,<]+): ', page))
     svg = base64.b64decode(re.search(r"data:image/svg\+xml;base64,([^\"]+)", page)[1]).decode()
-    entries = re.findall(r"<!-- (.+), [\d.]+ m -->", svg)  # of the legend, in the order of the colours
-    assert [name for _, name in named] == entries == ["shortest", "least risk + B-spline"]
-    assert [color for color, _ in named] == plot.route_colors(2)
+    profile = dict(re.findall(r'stroke: (#\w+)[^"]*"(?:(?!stroke).)*?<!-- ([^<>]+?), [\d.]+ m -->', svg, re.DOTALL))
+    colors = {name: color.upper() for color, name in scene.items()}
+    assert set(colors) == {"shortest", "least risk + B-spline"}
+    assert {name: color.upper() for color, name in profile.items()} == colors
+    assert len(set(colors.values())) == 2

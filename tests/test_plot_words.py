@@ -33,7 +33,7 @@ def test_a_plan_names_its_routes_with_their_colours_and_ends(table1, ways):
     assert looks[f"A*, {ways['A*'].length:.1f} m"] == ["blue", "solid"]
     assert looks[f"REPARE, {ways['REPARE'].length:.1f} m"] == ["green", "dash-dot-dotted"]
     assert looks["start"] == ["black", "discs"]
-    assert "City of REPARE Table 1" in text
+    assert "The city of REPARE Table 1" in text
     assert 'map, across "x, east [m]" from 0 to 100' in text
     assert 'colours: "top of the buildings above the ground [m]" from 0 to' in text
     assert "from (90.5, 18.5) to (50.5, 44.5)" in text

@@ -226,7 +226,7 @@ def default_flight(city: City, clearance: float, heights: dict[str, Any]) -> tup
     """
     from uavlab.risk import CAMPUS_FLIGHT
 
-    known = {"city of REPARE Table 1": TABLE1_FLIGHT, "reference campus": CAMPUS_FLIGHT}
+    known = {"the city of REPARE Table 1": TABLE1_FLIGHT, "reference campus": CAMPUS_FLIGHT}
     free = np.argwhere(~city.blocked(clearance, **heights))
     if len(free) == 0:
         raise ValueError(

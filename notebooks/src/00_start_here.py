@@ -31,6 +31,8 @@ from uavlab.spline import feasibility, smooth
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Weather, Wind, rain_force, wind_drag
 
+COLORS = {"safe curve": plot.SKY, "shortest route": plot.BLUE, "safest of the shortest": plot.ORANGE}
+
 # %% [markdown]
 # ## The weather
 #
@@ -181,7 +183,8 @@ assert crash_rate(flown["safe curve, offsets of 1 m"]).per_thousand < 30
 crash = fly(shortest, city, uav, wind, rng=2)
 arrival = fly(curve, city, uav, wind, rng=2)
 assert (crash.outcome, arrival.outcome) == ("crashed", "arrived")
-scene.show(city, flights={"safe curve": arrival, "shortest route": crash})
+scene.show(city, flights={"safe curve": arrival, "shortest route": crash}, safe_distance=safe_distance, wind=wind, uav=uav,
+           colors=COLORS, start_paused=True, start_at=crash.duration)  # fmt: skip
 
 # %% [markdown]
 # What flies here, which planners survive which gusts, and what "3σ" is worth over a whole flight:
@@ -206,7 +209,7 @@ print(f"{saved:.0%} less risk for {around.length / across.length - 1:.1%} more w
 
 # %%
 assert saved > 0.8
-scene.show(campus.city, around, {"safest of the shortest": across}, risk=campus)
+scene.show(campus.city, around, {"safest of the shortest": across}, risk=campus, uav=campus.uav, colors=COLORS)
 
 # %% [markdown]
 # Bright ground is where a fall would cost most, on a logarithmic scale. How such a map is made, what its numbers mean

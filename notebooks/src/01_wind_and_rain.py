@@ -21,7 +21,6 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from ipywidgets import FloatSlider, interact
 
 from uavlab import plot
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
@@ -492,12 +491,11 @@ def envelope_at(wind, rain, load):
 envelope_at(wind=14.0, rain=50.0, load=0.6)
 
 # %%
-sliders = {
-    "wind": FloatSlider(8.0, min=0.0, max=20.0, step=0.5, continuous_update=False, description="wind [m/s]"),
-    "rain": FloatSlider(50.0, min=0.0, max=300.0, step=10.0, continuous_update=False, description="rain [mm/h]"),
-    "load": FloatSlider(0.6, min=0.0, max=1.3, step=0.05, continuous_update=False, description="load [kg]"),
-}
-_ = interact(envelope_at, **sliders)
+labels = {"wind": "wind [m/s]", "rain": "rain [mm/h]", "load": "load [kg]"}
+weathers = {"wind": [2, 5, 8, 11, 14, 17], "rain": [0, 300], "load": [0.0, 0.3, 0.6, 0.9, 1.2]}
+plot.sliders(
+    envelope_at, title="flight envelope", labels=labels, start={"wind": 8, "load": 0.6}, progress=False, **weathers
+)
 
 # %% [markdown]
 # ## How often does real weather ground it?

@@ -21,13 +21,12 @@
 import math
 
 import numpy as np
-from ipywidgets import Dropdown, FloatSlider, interact
 from scipy import stats
 
 from uavlab import offsets, plot
 from uavlab.offsets import JointOffset, OffsetModel, SkewedOffset
 
-ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
+BLACK, BLUE, GREEN, ORANGE, PINK, YELLOW = plot.BLACK, plot.BLUE, plot.GREEN, plot.ORANGE, plot.PINK, plot.YELLOW
 
 # %% [markdown]
 # ## One axis: what the criterion says
@@ -219,9 +218,13 @@ def turn(sigma=1.0, dimensions=2):
 turn()
 
 # %%
-slider = FloatSlider(value=1.0, min=0.2, max=2.0, step=0.1, description="σ [m]", continuous_update=False)
-interact(turn, sigma=slider, dimensions=Dropdown(options=[1, 2, 3], value=2, description="dimension"))
-print("sliders: σ and dimension")
+labels, values = (
+    {"sigma": "σ [m]", "dimensions": "dimensions"},
+    {"sigma": [0.2, 0.5, 1.0, 1.5, 2.0], "dimensions": [1, 2, 3]},
+)
+plot.sliders(
+    turn, title="law of the distance", labels=labels, start={"sigma": 1.0, "dimensions": 2}, progress=False, **values
+)
 
 # %% [markdown]
 # ## Fig. 18: a circle that is one eighth too small

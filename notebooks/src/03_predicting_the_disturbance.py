@@ -53,12 +53,15 @@ assert set(FEATURES) <= set(hours.columns)
 
 # %%
 figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.0), dpi=plot.DPI, layout="constrained")
-axes[0].hist(hours.wind_speed, bins=np.arange(0, 17), color="#0072B2", edgecolor="white")
+axes[0].hist(hours.wind_speed, bins=np.arange(0, 17), color=plot.BLUE, edgecolor="white")
 axes[0].set(xlabel="wind speed [m/s]", ylabel="hours a year")
-axes[1].hist(hours.wind_from_deg[hours.wind_speed > 0], bins=np.arange(-5, 366, 10), color="#0072B2")
+axes[1].hist(hours.wind_from_deg[hours.wind_speed > 0], bins=np.arange(-5, 366, 10), color=plot.BLUE)
 axes[1].set(xlabel="wind from [degrees from north]", ylabel="hours a year", xticks=[0, 90, 180, 270, 360])
 by_hour = hours.groupby((hours.index + 1) % 24)
-for name, label, color in (("radiation", "radiation [W/m²]", "#E69F00"), ("wind_speed", "wind [0.01 m/s]", "#0072B2")):
+for name, label, color in (
+    ("radiation", "radiation [W/m²]", plot.YELLOW),
+    ("wind_speed", "wind [0.01 m/s]", plot.BLUE),
+):
     mean = by_hour[name].mean() * (100 if name == "wind_speed" else 1)
     axes[2].plot(mean.index, mean, color=color, label=label)
 axes[2].set(xlabel="hour of the day", ylabel="mean over the year", xticks=[0, 6, 12, 18, 24], ylim=(-20, 790))
@@ -114,9 +117,9 @@ winds = np.linspace(0, 10, 101)
 base = {"temperature_c": 15.0, "humidity_percent": 60.0, "pressure_hpa": 985.0, "wind_speed": winds}
 figure, axes = plot.new_figure(6.6, 3.9)
 for label, angle, sun, color, style, level in (
-    ("along the streets, sunny", 60.0, 800.0, "#D55E00", "-", 5),
+    ("along the streets, sunny", 60.0, 800.0, plot.ORANGE, "-", 5),
     ("along the streets, night", 60.0, 0.0, "#000000", "--", 4),
-    ("across the streets, sunny", 150.0, 800.0, "#0072B2", "-.", 2),
+    ("across the streets, sunny", 150.0, 800.0, plot.BLUE, "-.", 2),
 ):
     weather = {name: np.broadcast_to(v, winds.shape) for name, v in (base | {"wind_from_deg": angle}).items()}
     median = prediction.median_offsets(weather | {"radiation": np.full(winds.shape, sun)}, LIGHT_QUADROTOR)
@@ -197,9 +200,9 @@ figure, axes = plot.new_figure(6.8, 3.9)
 place = np.arange(3)
 bars = [
     axes.bar(place - 0.27, printed.values(), 0.25, color="0.6", label="REPARE Fig. 4"),
-    axes.bar(place, 100 * paper.accuracy[list(printed)], 0.25, color="#0072B2", label="ours: accuracy",
+    axes.bar(place, 100 * paper.accuracy[list(printed)], 0.25, color=plot.BLUE, label="ours: accuracy",
              yerr=100 * reach * spread.accuracy[list(printed)], capsize=4),
-    axes.bar(place + 0.27, 100 * paper.r2[list(printed)], 0.25, color="#E69F00", label="ours: R²",
+    axes.bar(place + 0.27, 100 * paper.r2[list(printed)], 0.25, color=plot.YELLOW, label="ours: R²",
              yerr=100 * reach * spread.r2[list(printed)], capsize=4),
 ]  # fmt: skip
 for drawn, digits in zip(bars, (3, 0, 0), strict=True):
@@ -266,9 +269,9 @@ figure, axes = plot.new_figure(6.8, 2.6)
 for row, (name, measure) in enumerate((("Ridge", "r2"), ("GaussianNB", "accuracy"), ("XGBClassifier", "accuracy"))):
     runs = 100 * steady.loc[steady.model == name, measure]
     axes.plot(
-        runs, np.full(len(runs), row), "o", color="#0072B2", alpha=0.6, label="ours, 8 tables" if not row else None
+        runs, np.full(len(runs), row), "o", color=plot.BLUE, alpha=0.6, label="ours, 8 tables" if not row else None
     )
-    axes.plot(printed[name], row, "|", color="#D55E00", markersize=26, markeredgewidth=3,
+    axes.plot(printed[name], row, "|", color=plot.ORANGE, markersize=26, markeredgewidth=3,
               label=None if row else "printed in REPARE")  # fmt: skip
 axes.set(yticks=range(3), yticklabels=["Ridge: R²", "GaussianNB: accuracy", "XGBClassifier: accuracy"])
 axes.set(xlabel="[%]", xlim=(0, 100), ylim=(2.6, -0.6))
@@ -401,8 +404,8 @@ place = np.arange(len(names))
 gap = each.groupby("model", sort=False).bayes_gap
 half = T_8 * gap.sem()
 for shift, values, errors, color, label in (
-    (-0.2, gap.mean()[names], half[names], "#0072B2", "paper's setting"),
-    (0.2, real.bayes_gap[names], (real.bayes_gap_high - real.bayes_gap)[names], "#E69F00", "Greensboro"),
+    (-0.2, gap.mean()[names], half[names], plot.BLUE, "paper's setting"),
+    (0.2, real.bayes_gap[names], (real.bayes_gap_high - real.bayes_gap)[names], plot.YELLOW, "Greensboro"),
 ):
     drawn = axes.barh(place + shift, 100 * values, 0.38, xerr=100 * errors, color=color, label=label, capsize=3)
     axes.bar_label(drawn, fmt="%.1f", padding=5, fontsize=8)
@@ -450,8 +453,8 @@ axes.plot(100 * curve[:, 0], curve[:, 1], "--", color="0.5", label="physics know
 for q, shift in ((0, (-12, 11)), (2, (6, 4)), (4, (6, 4)), (7, (8, -2))):
     place = (100 * curve[q, 0], curve[q, 1])
     axes.annotate(f"{quantiles[q]:.0%}", place, shift, textcoords="offset points", fontsize=8, color="0.3")
-for (name, color), marker in zip(zip(low.index, plot.route_colors(7), strict=True), "sDo^vP*", strict=True):
-    axes.plot(low[name], excess[name], marker, color=color, markersize=9, label=name)
+for name, look, marker in zip(low.index, plot.styles(list(low.index)), "sDo^vP*", strict=True):
+    axes.plot(low[name], excess[name], marker, color=look.color, markersize=9, label=name)
 axes.axvline(1.5, color="0.6", linewidth=1, label="1.5 % too low")
 axes.set(
     xlabel="class too low: unsafe flights [%]", ylabel="excess: classes too high, mean", xlim=(0, 32), ylim=(0, 0.9)
@@ -495,9 +498,9 @@ axes.fill_between(clock, truth * np.exp(-1.96 * 0.21), truth * np.exp(1.96 * 0.2
                   label="95 % of the simulated flights")  # fmt: skip
 axes.plot(clock, truth, color="0.4", label="their median")
 axes.step(
-    clock, predictor.predict_class(tomorrow), where="mid", color="#0072B2", linestyle="--", label="most probable class"
+    clock, predictor.predict_class(tomorrow), where="mid", color=plot.BLUE, linestyle="--", label="most probable class"
 )
-axes.step(clock, upper, where="mid", color="#D55E00", linewidth=2, label="rounded up: 95 % quantile class")
+axes.step(clock, upper, where="mid", color=plot.ORANGE, linewidth=2, label="rounded up: 95 % quantile class")
 axes.set(xlabel="hour of the day", ylabel="offset ξ [m]", xticks=range(0, 25, 3), ylim=(0, None))
 axes.legend(fontsize=8, loc="upper left")
 plot.finished(figure)

@@ -32,7 +32,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import shapely
-from ipywidgets import IntSlider, interact
 from matplotlib.colors import ListedColormap
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import ConvexHull, HalfspaceIntersection
@@ -281,9 +280,12 @@ plot.section(city, 50.0, np.minimum(city.clearance, 15.0), label="clearance [m],
 
 
 # %%
-@interact(height=IntSlider(30, 0, 99, 1, continuous_update=False, description="height [m]"))
 def section_at(height):
     return plot.section(city, height, np.minimum(city.clearance, 15.0), label="clearance [m], at most 15 m")
+
+
+heights, labels = [*range(0, 100, 5), 99], {"height": "height [m]"}
+plot.sliders(section_at, title="clearance", labels=labels, start={"height": 30}, progress=False, height=heights)
 
 
 # %% [markdown]
@@ -358,7 +360,7 @@ assert [round(kept[r], 2) for r in (3, 4, 5, 6)] == [2.55, 3.54, 3.81, 0.5]
 # through it, and a node beside its wall counts as free of risk.
 
 # %%
-zones = ListedColormap(["white", "#56B4E9", "#E69F00", "#D55E00", "black"])  # Okabe and Ito
+zones = ListedColormap(["white", plot.SKY, plot.YELLOW, plot.ORANGE, "black"])  # Okabe and Ito
 names = ["no penalty", "ring and ball", "ring only (adds)", "ball only (misses)", "building"]
 figure, panels = plt.subplots(1, 2, figsize=(9.4, 5.0), dpi=plot.DPI, layout="constrained", sharey=True)
 for axes, r in zip(panels, (3, 6), strict=True):
@@ -452,7 +454,7 @@ figure, panels = plt.subplots(2, 2, figsize=(7.6, 7.6), dpi=plot.DPI, layout="co
 for axes, (cell, model) in zip(panels.flat, models.items(), strict=True):
     plot.draw_map(axes, model, np.where(model.occupied[:, :, int(50 / cell)], 1.0, np.nan), "Greys", vmin=0, vmax=2)
     for outline in outlines:
-        axes.plot(*outline.exterior.xy, color="#D55E00", linewidth=1.2, label="true walls")
+        axes.plot(*outline.exterior.xy, color=plot.ORANGE, linewidth=1.2, label="true walls")
     axes.set_title(f"voxels of {cell:g} m")
     axes.label_outer()
 panels[0, 0].legend(*(entries[:1] for entries in axes.get_legend_handles_labels()), loc="lower left", fontsize=8)
@@ -514,8 +516,8 @@ for cell in measured["centres"]:
     assert np.allclose([shares[cell] for shares in measured.values()], expected, atol=0.12)  # 200 throws: 3.4 σ
 figure, panels = plt.subplots(1, 2, figsize=(9.0, 3.6), dpi=plot.DPI, layout="constrained", sharey=True)
 c = np.linspace(0.4, 4.2, 400)
-by_rule = {"centres": ("#D55E00", "o", 1 - WIDTH / c, 1 - THICKNESS / c),
-           "touched": ("#0072B2", "s", np.minimum(2 - WIDTH / c, 1), 0 * c)}  # fmt: skip
+by_rule = {"centres": (plot.ORANGE, "o", 1 - WIDTH / c, 1 - THICKNESS / c),
+           "touched": (plot.BLUE, "s", np.minimum(2 - WIDTH / c, 1), 0 * c)}  # fmt: skip
 for number, (axes, title) in enumerate(zip(panels, ("alley of 1.5 m closed", "wall of 0.8 m lost"), strict=True)):
     for rule, (color, marker, *curves) in by_rule.items():
         axes.plot(c, 100 * np.maximum(curves[number], 0), color=color, linewidth=1.2)
@@ -561,8 +563,8 @@ figure, panels = plt.subplots(2, 3, figsize=(9.6, 5.4), dpi=plot.DPI, layout="co
 for axes, (key, route) in zip(panels.flat, routes.items(), strict=True):
     plot.draw_map(axes, towns[key], np.where(towns[key].occupied[:, :, 0], 1.0, np.nan), "Greys", vmin=0, vmax=2)
     for building in blocks:
-        axes.plot(*shapely.box(*building.bounds[:, :2].ravel()).exterior.xy, color="#D55E00")
-    axes.plot(*route.points[:, :2].T, color="#0072B2", linewidth=2.5)
+        axes.plot(*shapely.box(*building.bounds[:, :2].ravel()).exterior.xy, color=plot.ORANGE)
+    axes.plot(*route.points[:, :2].T, color=plot.BLUE, linewidth=2.5)
     axes.set_title(f'"{key[0]}", {key[1]:g} m: ' + (f"{route.length:.1f} m" if route.reached else "no way"))
     axes.label_outer()
 figure.suptitle("True walls orange, occupied voxels grey, route blue")

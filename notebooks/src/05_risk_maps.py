@@ -32,7 +32,6 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from ipywidgets import FloatSlider, interact
 from matplotlib.colors import LogNorm
 from scipy import stats
 
@@ -105,7 +104,11 @@ assert energies["Eq. 4"] == pytest.approx(505.7, abs=0.5)
 assert energies["as printed"] / energies["Eq. 2"] == pytest.approx(0.67, abs=0.005)
 
 # %%
-ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
+BLACK, BLUE, GREEN, ORANGE, PINK, YELLOW = plot.BLACK, plot.BLUE, plot.GREEN, plot.ORANGE, plot.PINK, plot.YELLOW
+COLORS = {
+    "shortest, tie-break": BLACK, "shortest, least risky": BLUE, "shortest, riskiest": ORANGE, "drift-aware": GREEN,
+    "aware, at most +7.4 %": GREEN, "J0: length and threat": PINK, "drift-blind": ORANGE, "Pareto front": plot.SKY,
+}  # fmt: skip
 STYLES = (ORANGE, "-"), (BLUE, "--"), (BLACK, "-."), (PINK, ":"), (GREEN, (0, (5, 1, 1, 1, 1, 1)))
 figure, axes = plot.new_figure(7.2, 3.8)
 curves = {
@@ -364,9 +367,12 @@ assert low[both].max() / low[both].min() > 100
 
 
 # %%
-@interact(height=FloatSlider(27.5, min=2.5, max=77.5, step=5.0, description="height [m]", continuous_update=False))
 def at_height(height):
     return plot.risk(campus, height)
+
+
+heights, labels = np.arange(2.5, 80, 5), {"height": "height [m]"}
+plot.sliders(at_height, title="risk", labels=labels, start={"height": 27.5}, progress=False, height=heights)
 
 
 # %% [markdown]
@@ -530,10 +536,10 @@ assert 1 - least.cost / worst.cost == pytest.approx(0.37, abs=0.005)
 # % in risk, and who compares against a route found by chance can have either.
 
 # %%
-plot.risk(campus, 27.5, worst, aware, least)
+plot.risk(campus, 27.5, worst, aware, least, colors=COLORS)
 
 # %%
-scene.show(campus.city, aware, worst, risk=campus, slice_height=27.5)
+scene.show(campus.city, aware, worst, risk=campus, slice_height=27.5, uav=campus.uav, colors=COLORS)
 
 # %% [markdown]
 # ## How much safety for how many metres?
@@ -545,7 +551,7 @@ scene.show(campus.city, aware, worst, risk=campus, slice_height=27.5)
 # %%
 front = pareto_front(campus, start, goal, lengths=60)
 marked = [named(route, name) for route, name in ((tie, tie.planner), (j0, j0.planner), (worst, worst.planner))]
-plot.front(front, *marked)
+plot.front(front, *marked, colors=COLORS)
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -568,10 +574,13 @@ assert (np.diff([route.cost for route in front]) < 0).all()
 
 
 # %%
-@interact(extra=FloatSlider(7.5, min=0.0, max=40.0, step=0.5, description="longer [%]", continuous_update=False))
 def at_most(extra):
     route = least_risk(campus, start, goal, max_length=(1 + extra / 100) * tie.length + 1e-6)
-    return plot.risk(campus, 27.5, least, named(route, f"C = {campus.integral(route):.2e}"))
+    return plot.risk(campus, 27.5, least, named(route, f"C = {campus.integral(route):.2e}"), colors=COLORS)
+
+
+labels, extra = {"extra": "longer [%]"}, np.arange(0.0, 41.0, 2.5)
+plot.sliders(at_most, title="least risk", labels=labels, start={"extra": 7.5}, progress=False, extra=extra)
 
 
 # %% [markdown]
@@ -809,7 +818,7 @@ plot.finished(figure)
 # A planner that knows of it does better by a factor of 15 in the median.
 
 # %%
-scene.show(campus.city, {"drift-aware": drift_aware, "drift-blind": safest}, risk=campus)
+scene.show(campus.city, {"drift-aware": drift_aware, "drift-blind": safest}, risk=campus, uav=campus.uav, colors=COLORS)
 
 # %% [markdown]
 # ## A city of your own

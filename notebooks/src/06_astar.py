@@ -24,13 +24,14 @@ import time
 
 import matplotlib.pyplot as plt
 import numpy as np
-from ipywidgets import FloatSlider, interact
 from matplotlib.colors import ListedColormap
 
 from uavlab import plot, scene
 from uavlab.city import City, table1_city
 from uavlab.planners import astar, penalty_zone, shortcut, theta_star
 from uavlab.route import Route
+
+COLORS = {"shortest": plot.BLUE, "with a penalty zone": plot.ORANGE}
 
 # %% [markdown]
 # ## The graph: 26 neighbours
@@ -84,11 +85,11 @@ axes.add_patch(plt.Rectangle((0.5, -0.5), 1, 1, color="0.35", label="obstacle"))
 ways = {target for target, _ in neighbours(cube - {(1, 0, 0)}, (0, 0, 0))}
 for x, y, z in MOVES:
     if z == 0:
-        color, style = ("#0072B2", "-") if (x, y, z) in ways else ("#D55E00", "--")
+        color, style = (plot.BLUE, "-") if (x, y, z) in ways else (plot.ORANGE, "--")
         arrow = {"arrowstyle": "-|>", "color": color, "linestyle": style, "linewidth": 2}
         axes.annotate("", (0.95 * x, 0.95 * y), (0, 0), zorder=3, arrowprops=arrow)
-axes.plot([], [], color="#0072B2", label="legal")
-axes.plot([], [], color="#D55E00", linestyle="--", label="forbidden: its box\nis not free")
+axes.plot([], [], color=plot.BLUE, label="legal")
+axes.plot([], [], color=plot.ORANGE, linestyle="--", label="forbidden: its box\nis not free")
 axes.set(xlim=(-1.5, 1.5), ylim=(-1.5, 1.5), aspect="equal", xlabel="x [cells]", ylabel="y [cells]")
 for axis in (axes.xaxis, axes.yaxis):
     axis.set_ticks([-1, 0, 1])
@@ -397,13 +398,13 @@ assert math.isclose(priced.length, 71.213, abs_tol=5e-4)
 assert (shortest.clearance(city), priced.clearance(city)) == (0.5, 3.5)
 
 # %%
-plot.profile(city, both, safe_distance=safe_distance)
+plot.profile(city, both, safe_distance=safe_distance, colors=COLORS)
 
 # %% [markdown]
 # Seven per cent more length buys seven times the clearance.
 
 # %%
-scene.show(city, dict(reversed(both.items())), safe_distance=safe_distance)
+scene.show(city, both, safe_distance=safe_distance, colors=COLORS)
 
 # %% [markdown]
 # ## Why the printed cost is no cost of a route
@@ -445,8 +446,8 @@ assert forth[-1] == back[0] == 12
 # %%
 figure, axes = plot.new_figure(7.2, 3.2)
 axes.axvspan(7.5, 10.5, color="0.88", label="in the zone")
-axes.plot(east, forth, "o-", color="#D55E00", label="T of the corridor, there (→)")
-axes.plot(east, back, "s-", color="#0072B2", label="T of the corridor, back (←)")
+axes.plot(east, forth, "o-", color=plot.ORANGE, label="T of the corridor, there (→)")
+axes.plot(east, back, "s-", color=plot.BLUE, label="T of the corridor, back (←)")
 axes.axhline(16, color="0.3", linestyle="--", label="highest T of the detour")
 axes.axhline(12, color="0.3", linestyle=":", label="length of the corridor")
 axes.set(xlabel="place in the corridor [m]", ylabel="T [m]", ylim=(11, 18))
@@ -506,7 +507,7 @@ for omega in (0.1, 0.2):
 
 # %%
 figure, axes = plot.new_figure(6.4, 3.2)
-for (omega, gaps), color, style in zip(gap.items(), ("#0072B2", "#D55E00"), ("-", "--"), strict=True):
+for (omega, gaps), color, style in zip(gap.items(), (plot.BLUE, plot.ORANGE), ("-", "--"), strict=True):
     axes.step(range(1, 101), np.sort(gaps)[::-1], where="mid", color=color, linestyle=style, label=f"ω = {omega}")
 axes.set(xlabel="pairs, largest difference first", ylabel="|length there − back| [m]", xlim=(0, 60), ylim=(0, None))
 axes.set_title("REPARE Eq. 13 as printed: same pair, other direction", fontsize=10)
@@ -555,7 +556,7 @@ assert np.ptp(length[rates.index(0.5) :], axis=0).max() < 1e-9  # nothing change
 
 # %%
 figure, axes = plot.new_figure(6.4, 3.6)
-axes.plot(inside.mean(axis=1), length.mean(axis=1), "o-", color="#0072B2")
+axes.plot(inside.mean(axis=1), length.mean(axis=1), "o-", color=plot.BLUE)
 for row, text in enumerate(["ω = 0", "ω = 0.05", "ω = 0.1", "ω = 0.2", "ω = 0.5 and more"]):
     axes.annotate(text, (inside[row].mean(), length[row].mean()), (6, 4), textcoords="offset points", fontsize=8)
 axes.set(xlabel="metres in the zone, mean of 100 routes [m]", ylabel="length, mean of 100 routes [m]")
@@ -573,11 +574,14 @@ plot.finished(figure)
 
 
 # %%
-@interact(omega=FloatSlider(0.5, min=0.0, max=1.0, step=0.05, description="ω", continuous_update=False))
 def draw(omega):
     price = penalty_zone(city, safe_distance, penalty=omega)
     turned = {"shortest": shortest, f"ω = {omega:.2f}": astar(city, notch, middle, price=price)}
-    return plot.profile(city, turned, safe_distance=safe_distance)
+    return plot.profile(city, turned, safe_distance=safe_distance, colors=COLORS)
+
+
+values = {"omega": np.round(np.arange(0.0, 1.01, 0.05), 2)}
+plot.sliders(draw, title="out of the notch", labels={"omega": "ω"}, start={"omega": 0.5}, progress=False, **values)
 
 
 # %% [markdown]
@@ -618,7 +622,7 @@ assert (round(missed, 3), round(added, 3)) == (0.008, 0.047)
 # %%
 figure, axes = plot.new_figure(6.4, 4.2)
 kind = np.select([city.occupied, zones["ball"] & zones["ring"], zones["ring"], zones["ball"]], [4, 1, 2, 3], 0)
-shades = ListedColormap(["white", "0.8", "#E69F00", "#0072B2", "black"])
+shades = ListedColormap(["white", "0.8", plot.YELLOW, plot.BLUE, "black"])
 plot.draw_map(axes, city, kind[:, :, 52], shades, vmin=0, vmax=4)
 for value, text in enumerate(("open", "in both zones", "ring only", "ball only", "building")):
     axes.add_patch(plt.Rectangle((0, 0), 0, 0, facecolor=shades(value), edgecolor="0.5", label=text))
@@ -698,7 +702,7 @@ assert safe.clearance(city) >= safe_distance
 assert safe.length < 1.02 * shortest.length
 
 # %%
-plot.plan(city, both, safe)
+plot.plan(city, both, safe, colors=COLORS)
 
 # %% [markdown]
 # ## Any angle in the search itself

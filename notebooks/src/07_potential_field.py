@@ -25,7 +25,6 @@ from itertools import product
 
 import matplotlib.pyplot as plt
 import numpy as np
-from ipywidgets import FloatLogSlider, FloatSlider, interact
 from matplotlib.colors import ListedColormap
 from scipy import ndimage
 from scipy.optimize import minimize
@@ -35,7 +34,7 @@ from uavlab.city import City, table1_city
 from uavlab.planners import astar, penalty_zone, potential_field, potential_forces, repulsion, shortcut
 from uavlab.vehicle import LIGHT_QUADROTOR
 
-ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
+BLACK, BLUE, GREEN, ORANGE = plot.BLACK, plot.BLUE, plot.GREEN, plot.ORANGE
 city = table1_city()
 notch, middle = (90, 18, 30), (50, 44, 30)  # REPARE Fig. 12
 
@@ -690,13 +689,16 @@ figure
 
 
 # %%
-@interact(
-    push=FloatLogSlider(5.0, base=10, min=0, max=4, step=0.25, description="k_rep", continuous_update=False),
-    reach=FloatSlider(5.0, min=2.0, max=12.0, step=0.5, description="R [m]", continuous_update=False),
-)
 def draw(push, reach):
     pairs = {"flight": (start, goal), "notch": (notch, middle)}
     return plot.plan(city, {name: potential_field(city, *pair, push=push, reach=reach) for name, pair in pairs.items()})
+
+
+labels, values = (
+    {"push": "k_rep", "reach": "R [m]"},
+    {"push": [1, 5, 20, 100, 1000, 10000], "reach": [2, 4, 5, 6, 8, 10, 12]},
+)
+plot.sliders(draw, title="potential field", labels=labels, start={"push": 5, "reach": 5}, progress=False, **values)
 
 
 # %% [markdown]

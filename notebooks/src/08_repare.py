@@ -26,7 +26,6 @@ from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
-from ipywidgets import Dropdown, FloatSlider, interact
 from matplotlib.colors import LogNorm
 from scipy.optimize import linprog
 
@@ -39,7 +38,7 @@ from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
 from uavlab.weather import Wind, rain_force
 
 # %%
-ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
+BLACK, BLUE, ORANGE, PINK = plot.BLACK, plot.BLUE, plot.ORANGE, plot.PINK
 city = table1_city()
 notch, middle = (90, 18, 30), (50, 44, 30)  # REPARE Fig. 12
 print(f"{city.name}: {city.occupied.sum():,} of {city.occupied.size:,} voxels of 1 m are occupied")
@@ -861,13 +860,9 @@ def turn(disturbance="mild", load="light", omega=2.0):
 turn()
 
 # %%
-interact(
-    turn,
-    disturbance=Dropdown(options=list(DISTURBANCES), value="mild"),
-    load=Dropdown(options=list(LOADS), value="light"),
-    omega=FloatSlider(2.0, min=0.0, max=4.0, step=0.02, description="ω₀", continuous_update=False),
-)
-print("sliders: disturbance, load and ω₀")
+cases = {"disturbance": list(DISTURBANCES), "load": list(LOADS), "omega": [0.0, 0.05, 0.1, 2.0]}
+start = {"disturbance": "mild", "load": "light", "omega": 2.0}
+plot.sliders(turn, title="REPARE and its zone", labels={"omega": "ω₀"}, start=start, progress=False, **cases)
 
 # %% [markdown]
 # ## What the paper says, what we find

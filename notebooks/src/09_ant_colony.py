@@ -29,7 +29,6 @@ from functools import partial
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import Image
-from ipywidgets import FloatSlider, interact
 from matplotlib.colors import LogNorm
 from PIL import Image as Picture
 from scipy import stats
@@ -41,7 +40,7 @@ from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 from uavlab.sweep import sweep
 
 # %%
-ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
+BLUE, GREEN, ORANGE = plot.BLUE, plot.GREEN, plot.ORANGE
 start, goal = CAMPUS_FLIGHT
 campus = reference_campus()
 exact = least_risk(campus, start, goal)
@@ -675,6 +674,8 @@ scene.show(
     campus.city,
     {"exact optimum": exact, "printed, for risk": marked[1], "ours": marked[2]},
     risk=campus,
+    uav=campus.uav,
+    colors={"exact optimum": plot.BLACK},
 )
 
 # %% [markdown]
@@ -692,26 +693,17 @@ scene.show(
 def turn(beta=12.0, gamma=2.0, evaporation=0.1):
     """Our colony with other habits, over the risk map, and its gap."""
     route = ant_colony(campus, start, goal, rng=0, budget=1000, beta=beta, gamma=gamma, evaporation=evaporation)
-    if not route.reached:
-        return print(route.reason)
-    gap = optimality_gap(route, exact)
-    return plot.risk(
-        campus,
-        27.5,
-        {f"β = {beta:g}, γ = {gamma:g}, ρ = {evaporation:g}: gap {gap:.0%}": route, "exact optimum": exact},
-    )
+    gap = f"gap {optimality_gap(route, exact):.0%}" if route.reached else "none arrived"
+    name = f"β = {beta:g}, γ = {gamma:g}, ρ = {evaporation:g}: {gap}"
+    return plot.risk(campus, 27.5, {name: route, "exact optimum": exact}, colors={"exact optimum": plot.BLACK})
 
 
 turn()
 
 # %%
-interact(
-    turn,
-    beta=FloatSlider(12.0, min=0.0, max=80.0, step=1.0, description="β", continuous_update=False),
-    gamma=FloatSlider(2.0, min=0.0, max=6.0, step=0.25, description="γ", continuous_update=False),
-    evaporation=FloatSlider(0.1, min=0.0, max=1.0, step=0.05, description="ρ", continuous_update=False),
-)
-print("sliders: β, γ and ρ")
+habits = {"beta": [0, 4, 12, 40], "gamma": [0, 1, 2, 5], "evaporation": [0.02, 0.1, 0.5]}
+labels, first = {"beta": "β", "gamma": "γ", "evaporation": "ρ"}, {"beta": 12, "gamma": 2, "evaporation": 0.1}
+plot.sliders(turn, title="the colony's route", labels=labels, start=first, progress=False, **habits)
 
 # %% [markdown]
 # ## What the paper says, what we find

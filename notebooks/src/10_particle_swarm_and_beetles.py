@@ -29,7 +29,6 @@ from itertools import pairwise
 
 import matplotlib.pyplot as plt
 import numpy as np
-from ipywidgets import Dropdown, IntSlider, interact
 from matplotlib.colors import LogNorm
 from scipy.optimize import brentq
 
@@ -46,8 +45,7 @@ from uavlab.sweep import sweep
 
 # %%
 # NBVAL_CHECK_OUTPUT
-ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
-STYLES = plot.CONVERGENCE_STYLES
+BLUE, GREEN, ORANGE, PINK = plot.BLUE, plot.GREEN, plot.ORANGE, plot.PINK
 start, goal = CAMPUS_FLIGHT
 campuses = [reference_campus(), *(random_campus(seed) for seed in range(11))]
 campus, optimum = campuses[0], least_risk(campuses[0], start, goal)
@@ -271,7 +269,7 @@ assert all(typical("PSO, ours", f) < typical("PSO, printed (ω = 1)", f) / 4 for
 rng = np.random.default_rng(3)
 cloud = {"from a cube (PSO-BAS Eq. 17)": rng.uniform(-1, 1, (10**6, 2)), "Gaussian": rng.normal(size=(10**6, 2))}
 figure, axes = plt.subplots(figsize=(7.2, 4.2), dpi=plot.DPI, layout="constrained", subplot_kw={"projection": "polar"})
-for (name, drawn), (color, style) in zip(cloud.items(), (STYLES[0], STYLES[1]), strict=True):
+for (name, drawn), (color, style) in zip(cloud.items(), plot.styles(list(cloud)), strict=True):
     angle = np.degrees(np.arctan2(drawn[:, 1], drawn[:, 0]))
     count, _ = np.histogram((angle + 2.5) % 360, 72, (0, 360))  # the first bin is about 0°
     share = count / count.mean()
@@ -381,7 +379,7 @@ figure, panels = plt.subplots(1, 3, figsize=(11.4, 4.2), dpi=plot.DPI, layout="c
 shown = ("PSO, printed (ω = 1)", "PSO, ours", "BAS, greedy, by success", "PSO-BAS printed, on current")
 shown += ("PSO-BAS printed, on best", "PSO-BAS ours, on best")
 for axes, (function, least) in zip(panels, {sphere: 1e-14, rosenbrock: 0.1, rastrigin: 1.0}.items(), strict=True):
-    for name, (color, style) in zip(shown, STYLES, strict=True):
+    for name, (color, style) in zip(shown, plot.styles(list(shown)), strict=True):
         line = np.median(tried[name][function], axis=0)
         axes.semilogy(np.arange(1, 4001), line, color=color, linestyle=style, linewidth=2, label=name)
     axes.set(xlabel="evaluations made", title=function.__name__, xlim=(0, 4000), ylim=(least, None))
@@ -807,7 +805,7 @@ for weight, row in zip(weights, aware, strict=True):
 
 # %%
 figure, axes = plot.new_figure(7.2, 4.2)
-for weight, (color, _), marker in zip(weights, STYLES, "os^Dv", strict=False):
+for weight, (color, _), marker in zip(weights, plot.styles([f"w = {w:g}" for w in weights]), "os^Dv", strict=False):
     cuts, mores = 100 * table4[weight].T
     axes.plot(mores[1:], -cuts[1:], marker, color=color, fillstyle="none", label=f"w = {weight:g}")
     axes.plot(mores[:1], -cuts[:1], marker, color=color, markersize=10)
@@ -842,12 +840,12 @@ assert 23 < 8.75e-7 / industry < 24.5
 # %%
 refined_optimum = refine(optimum, campus, rng=0)
 shown = {"PSO-BAS, risk and length": aware_route, "PSO-BAS, blind": blind_route, "exact, refined": refined_optimum}
-scene.show(campus.city, shown, risk=campus)
+scene.show(campus.city, shown, risk=campus, uav=campus.uav, colors={"exact, refined": plot.BLACK})
 
 # %% [markdown]
 # ## Turn it yourself
 #
-# Number of waypoints, first arcs, optimiser and seed, on the reference campus; 2 000 curves each. White lines are the
+# Number of waypoints, first arcs and optimiser, on the reference campus; 2 000 curves each, seed 4. White lines are the
 # exact optimum.
 
 
@@ -869,14 +867,9 @@ def turn(optimizer="pso_bas", waypoints=7, arcs=200, seed=4):
 turn()
 
 # %%
-interact(
-    turn,
-    optimizer=Dropdown(options=["pso_bas", "pso", "pso_aco", "bas"], value="pso_bas"),
-    waypoints=IntSlider(7, min=1, max=15, continuous_update=False),
-    arcs=IntSlider(200, min=1, max=800, continuous_update=False),
-    seed=IntSlider(4, min=0, max=20, continuous_update=False),
-)
-print("sliders: optimiser, waypoints, arcs and seed")
+values = {"optimizer": ["pso_bas", "pso", "pso_aco", "bas"], "waypoints": [1, 3, 7, 15], "arcs": [1, 200]}
+first = {"optimizer": "pso_bas", "waypoints": 7, "arcs": 200}
+plot.sliders(turn, title="the swarm's route", start=first, progress=False, **values)
 
 # %% [markdown]
 # ## What the paper says, what we find

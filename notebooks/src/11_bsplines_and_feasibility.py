@@ -26,7 +26,6 @@ from dataclasses import replace
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import display
-from ipywidgets import Dropdown, FloatSlider, interact
 from scipy.interpolate import BSpline
 from scipy.stats import binomtest
 
@@ -39,7 +38,7 @@ from uavlab.vehicle import GRAVITY, RISK_QUADROTOR
 
 # %%
 # NBVAL_CHECK_OUTPUT
-ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
+BLACK, BLUE, GREEN, ORANGE, PINK, YELLOW = plot.BLACK, plot.BLUE, plot.GREEN, plot.ORANGE, plot.PINK, plot.YELLOW
 uav = RISK_QUADROTOR
 print(f"{uav.name}: {uav.diameter:g} m wide, cruises at {uav.cruise_speed:g} m/s, {uav.thrust:g} N of thrust")
 
@@ -72,8 +71,8 @@ assert (weights > -1e-15).all()
 
 # %%
 figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.8), dpi=plot.DPI, layout="constrained")
-for number, color in enumerate((ORANGE, BLUE, BLACK, PINK)):
-    left.plot(t, weights[:, number], color=color, linestyle=plot.CONVERGENCE_STYLES[number][1], label=f"$P_{number}$")
+for number, (color, style) in enumerate(plot.styles(["P0", "P1", "P2", "P3"])):
+    left.plot(t, weights[:, number], color=color, linestyle=style, label=f"$P_{number}$")
 left.set(xlabel="t", ylabel="weight of the point")
 left.legend()
 right.plot(*control[:4].T, "o--", color=BLACK, linewidth=1, label="control polygon")
@@ -550,7 +549,7 @@ display(feasibility(quickest, campus.city, uav))
 plot.curve_profile(smoothed, quickest, speed=uav.cruise_speed, cell=campus.city.cell)
 
 # %%
-scene.show(campus.city, quickest, {"least risk + B-spline": smoothed}, risk=campus)
+scene.show(campus.city, quickest, {"least risk + B-spline": smoothed}, risk=campus, uav=campus.uav)
 
 # %% [markdown]
 # Neither planner knew the limit. One that searches among flyable curves only, by Eq. 7 in the place of "κ < 1", would
@@ -564,22 +563,22 @@ shown = {"exact route": smoothed, "swarm, 1 waypoint": quickest, "swarm, 7 waypo
 
 
 def turn(curve="exact route", speed=5.0, bank_deg=30.0):
-    """The report of a curve and its curvature and pitch."""
+    """A curve's curvature and pitch, and which limits it breaks."""
     bank = np.radians(bank_deg)
-    display(feasibility(shown[curve], campus.city, uav, speed=speed, bank=bank))
-    return plot.curve_profile(shown[curve], speed=speed, cell=campus.city.cell, bank=bank)
+    limits = feasibility(shown[curve], campus.city, uav, speed=speed, bank=bank).limits
+    figure = plot.curve_profile(shown[curve], speed=speed, cell=campus.city.cell, bank=bank)
+    figure.suptitle(
+        "beyond: " + (", ".join(limit.name for limit in limits if not limit.met) or "no limit"), fontsize=10
+    )
+    return figure
 
 
 turn()
 
 # %%
-interact(
-    turn,
-    curve=Dropdown(options=list(shown), value="exact route"),
-    speed=FloatSlider(5.0, min=1.0, max=20.0, step=0.5, description="speed [m/s]", continuous_update=False),
-    bank_deg=FloatSlider(30.0, min=5.0, max=60.0, step=5.0, description="bank [°]", continuous_update=False),
-)
-print("sliders: speed and bank; and which curve")
+values = {"curve": list(shown), "speed": [3, 5, 8, 12], "bank_deg": [15, 30, 45]}
+labels, first = {"speed": "speed [m/s]", "bank_deg": "bank [°]"}, {"speed": 5, "bank_deg": 30}
+plot.sliders(turn, title="curvature and pitch", labels=labels, start=first, progress=False, **values)
 
 # %% [markdown]
 # ## What the papers say, what we find

@@ -24,7 +24,6 @@ from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
-from ipywidgets import FloatSlider, interact
 
 from uavlab import plot, scene
 from uavlab.city import City, table1_city
@@ -38,7 +37,7 @@ from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Wind
 
 # %%
-ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW = plot.ROUTE_COLORS
+BLACK, BLUE, GREEN, YELLOW = plot.BLACK, plot.BLUE, plot.GREEN, plot.YELLOW
 city = table1_city()
 uav = LIGHT_QUADROTOR.loaded(LOADS["light"])
 print(f"{uav.name}: {uav.weight:.1f} N with its light load, {uav.thrust:g} N of thrust, body of {uav.diameter:g} m")
@@ -120,7 +119,7 @@ assert sigmas["head wind, heavy load"][-1, 1, 0] > 2 * sigmas["head wind, heavy 
 
 # %%
 figure, panels = plt.subplots(1, 2, figsize=(11.0, 4.2), dpi=plot.DPI, layout="constrained")
-for (name, values), (color, style), marker in zip(sigmas.items(), plot.CONVERGENCE_STYLES, "osD^", strict=False):
+for (name, values), (color, style), marker in zip(sigmas.items(), plot.styles(list(sigmas)), "osD^", strict=False):
     said, flown = values[:, :, 0].T
     panels[0].loglog(strengths, flown, marker, color=color, label=f"{name}, flown")
     panels[0].loglog(strengths, said, linestyle=style, color=color, linewidth=1.2)
@@ -195,10 +194,10 @@ in_calm = flown(routes["far"], calm)
 plot.tracks(city, in_calm, routes["far"])
 
 # %% [markdown]
-# The first flight of each in space, all by the same clock:
+# The first flight of each in 3D, all by the same clock:
 
 # %%
-scene.show(city, flights={planner: flights[0] for planner, flights in in_calm.items()})
+scene.show(city, flights={planner: flights[0] for planner, flights in in_calm.items()}, uav=uav)
 
 # %% [markdown]
 # In calm air A* crashes! Its route passes at exactly half a metre from the walls, and the body has a radius of half a
@@ -240,11 +239,11 @@ assert not routes["notch"]["potential field"].reached
 plot.tracks(city, in_storm["far"], routes["far"])
 
 # %%
-plot.tracks(city, in_storm["notch"], routes["notch"], area=(40, 100, 5, 65))
+plot.tracks(city, in_storm["notch"], routes["notch"], area=(40, 100, 5, 65), wind=storm)
 
 # %% [markdown]
 # The X of Fig. 11 is real, and so is that of Fig. 12: the potential field doesn't crash in the notch, it never gets out
-# of it. Now in space. One flight by A* that crashes and one by REPARE that arrives, at the same time from the same
+# of it. Now in 3D. One flight by A* that crashes and one by REPARE that arrives, at the same time from the same
 # place, in the same storm:
 
 
@@ -256,14 +255,17 @@ def first(by_planner, planner, outcome):
 
 crashed, safe = first(in_storm["notch"], "A*", "crashed"), first(in_storm["notch"], "REPARE", "arrived")
 print(f"A*: {crashed}\nREPARE: {safe}")
-scene.show(city, flights={"A*": crashed, "REPARE": safe})
+scene.show(
+    city, flights={"A*": crashed, "REPARE": safe}, wind=storm, uav=uav, start_paused=True, start_at=crashed.duration
+)
 
 # %% [markdown]
 # And the far pair: two that crash and two that arrive, all by the same clock.
 
 # %%
 ends = {"A*": "crashed", "potential field": "crashed", "REPARE": "arrived", "hazard A*": "arrived"}
-scene.show(city, flights={planner: first(in_storm["far"], planner, end) for planner, end in ends.items()})
+last = {planner: first(in_storm["far"], planner, end) for planner, end in ends.items()}
+scene.show(city, flights=last, wind=storm, uav=uav)
 
 # %% [markdown]
 # ## Crashes per 1 000
@@ -618,24 +620,24 @@ assert in_wind.in_ellipse < 0.985
 #
 # ## Turn it yourself
 #
-# How strong are the gusts? Wind of 6 m/s, gusts that last 3 s, eight flights each out of the notch.
+# How strong are wind and gusts? Gusts last 3 s; 25 flights each out of the notch. Which of the two costs more crashes?
 
 
 # %%
-def turn(gusts=3.0):
+def turn(speed=6.0, gusts=3.0):
     """Flights out of the notch by three planners."""
     chosen = {planner: routes["notch"][planner] for planner in ("A*", "REPARE", "hazard A*")}
-    wind = Wind((6.0, 0.0), deviation=gusts, correlation=3.0)
-    figure = plot.tracks(city, flown(chosen, wind, count=8), chosen, area=(40, 100, 5, 65))
-    figure.suptitle(f"wind of 6 m/s, σ of the gusts {gusts:g} m/s")
+    wind = Wind((speed, 0.0), deviation=gusts, correlation=3.0)
+    figure = plot.tracks(city, flown(chosen, wind, count=25), chosen, area=(40, 100, 5, 65), wind=wind)
+    figure.suptitle(f"wind of {speed:g} m/s, σ of the gusts {gusts:g} m/s")
     return figure
 
 
 turn()
 
 # %%
-interact(turn, gusts=FloatSlider(3.0, min=0.0, max=8.0, step=0.5, description="gusts [m/s]", continuous_update=False))
-print("slider: strength of the gusts")
+values, labels = {"speed": [0, 3, 6, 9], "gusts": [0, 1, 3, 5]}, {"speed": "wind [m/s]", "gusts": "σ of gusts [m/s]"}
+plot.sliders(turn, title="flights", labels=labels, start={"speed": 6, "gusts": 3}, progress=False, **values)
 
 # %% [markdown]
 # ## What the paper says, what we find

@@ -365,7 +365,9 @@ assert np.hypot(*(log.position[-1] - roof)[:2]) < 4
 # hides the plan, and where you see that it climbs first:
 
 # %% tags=["figure"]
-scene.show(city, {"plan": mission.path(city)}, flights={"flown": log.flight()})
+scene.show(
+    city, {"plan": mission.path(city)}, flights={"flown": log.flight()}, colors={"plan": plot.BLACK, "flown": plot.BLUE}
+)
 
 # %% [markdown]
 # `log.to_csv("flight.csv")` keeps the track as a table. `connect(..., record="flight.tlog")` keeps every packet that
@@ -423,7 +425,7 @@ assert 0.05 < push < 0.3
 
 # %% tags=["figure"]
 figure, axes = plot.new_figure(7.2, 4.0)
-ORANGE, BLUE, BLACK = plot.ROUTE_COLORS[:3]
+BLACK, BLUE, ORANGE = plot.BLACK, plot.BLUE, plot.ORANGE
 axes.plot(time, offsets.T, color=BLUE, linewidth=0.5, alpha=0.35)
 for sign in (-1, 1):
     axes.plot(time, sign * 3 * sigma, color=BLACK, linewidth=2, label="3σ of gusts and GPS" if sign > 0 else None)

@@ -587,7 +587,6 @@ CALLS = {
     "plot.risk": lambda: {"risk_map": RISK, "height": 2.5, "routes": (LINE,)},
     "plot.risk_norm": lambda: {"risk_map": RISK},
     "plot.styles": lambda: {"names": ["A*", "mine"], "colors": {"mine": "#009E73"}},
-    "plot.route_colors": lambda: {"count": 3},
     "plot.runs": lambda: {
         "values": {"PSO": {"town": [1.0, 0.5, 2.0]}}, "label": "gap [%]", "digits": 1, "log": True,
         "places": {"least": 1.5}, "x_range": (0.25, 8.0), "title": "rows", "colors": {"PSO": "#0072B2"},

@@ -267,7 +267,7 @@ LOW = ((5, 5, 30), (5, 95, 30))
 @pytest.mark.parametrize(
     ("message", "options"),
     [
-        (r"city of REPARE Table 1' doesn't know where on Earth it lies.*home=\(longitude, latitude", {"city": NOWHERE}),
+        (r"REPARE Table 1' doesn't know where on Earth it lies.*home=\(longitude, latitude", {"city": NOWHERE}),
         (r"home is 100 km from the start of the route.*order is \(longitude, latitude", {"home": FAR}),
         (r"home is .* km from the start", {"home": (DELFT.latitude, DELFT.longitude)}),
         (r"home lies outside of the map, at \(-5\d\.\d.*larger margin", {"home": (4.3592, 52.0101)}),

@@ -61,7 +61,7 @@ def test_kml(exported, above_sea):
     assert root.tag == f"{KML}kml"
     (document,) = root
     assert local(document) == ["name", "Placemark", "Placemark", "Placemark"]
-    assert document.findtext(f"{KML}name") == "city of REPARE Table 1"
+    assert document.findtext(f"{KML}name") == "the city of REPARE Table 1"
     for mark in document.iter(f"{KML}Placemark"):  # in the order of the schema
         assert local(mark) in (["name", "Style", "LineString"], ["name", "Style", "Polygon"])
         assert local(mark[1]) == ["LineStyle", "PolyStyle"]

@@ -83,7 +83,7 @@ def test_the_path_is_the_route(altitudes, end):
     expected = [(0, 0, 0), (0, 0, 30), *route.points]  # home is at x = y = 0, where the city's place is
     expected += {"land": [(50, 98, 0)], "return": [(50, 98, mission.return_height)], "stay": []}[end]
     assert path.points == pytest.approx(np.array(expected), abs=CENTIMETRE)
-    assert (path.takeoff, path.landing, path.planner) == (1, int(end == "land"), "city of REPARE Table 1")
+    assert (path.takeoff, path.landing, path.planner) == (1, int(end == "land"), "the city of REPARE Table 1")
 
 
 @pytest.mark.parametrize("name", ["plan", "waypoints"])
@@ -110,7 +110,7 @@ def test_the_path_on_another_map_of_the_place(tmp_path):
 
 def test_a_map_without_a_place():
     nowhere = replace(table1(), reference=None)
-    with pytest.raises(ValueError, match="'city of REPARE Table 1' doesn't know where on Earth it lies"):
+    with pytest.raises(ValueError, match="'the city of REPARE Table 1' doesn't know where on Earth it lies"):
         plain().path(nowhere)
     with pytest.raises(ValueError, match="city must be a City"):
         plain().path("Delft")
@@ -148,7 +148,7 @@ def test_all_that_is_made_is_kept_in_its_fields():
     mission = Mission.from_route(
         Route([(5, 5, 30), (5, 95, 30)]), table1(), LIGHT_QUADROTOR, home=HOME, corner_radius=3.0, speed=4.0
     )
-    assert mission.name == "city of REPARE Table 1"
+    assert mission.name == "the city of REPARE Table 1"
     assert (mission.speed, mission.corner_radius) == (4.0, 3.0)
     assert mission.place[:2] == table1().reference[:2]
     assert mission.home == Place(*HOME)

@@ -105,7 +105,7 @@ def test_the_table():
     assert "<there>" not in page
     assert "≥" in page
     assert "≤" in page
-    assert str(checked()).splitlines()[0] == "Preflight of Table 1: passed"
+    assert str(checked()).splitlines()[0] == "Preflight of the city of REPARE Table 1: passed"
 
 
 def test_a_check_is_met_at_its_limit_and_not_beyond():
@@ -683,7 +683,7 @@ def test_a_mission_of_a_file_is_judged_too():
         (r"mission: items\[0\] lands before it has flown", {"mission": replace(made(), items=made().items[-1:])}),
         (r"mission must have an item at a place", {"mission": replace(made(), items=made().items[1:2])}),
         (r"mission: items\[2\].*isn't known", {"mission": by_hand((5, 5, 30), (9, 5, 30), end=82)}),
-        (r"mission lies \d\d+ km off city 'city of REPARE Table 1': give the city", {
+        (r"mission lies \d\d+ km off city 'the city of REPARE Table 1': give the city", {
             "mission": by_hand((5, 5, 30), (90_000, 5, 30))}),
         ("has a place in frame 1", {"mission": other_items(made(), lambda n, item: item._replace(frame=1))}),
         ("mission must fly somewhere, and stays where it begins", {"mission": by_hand((5, 5, 1), end=None)}),

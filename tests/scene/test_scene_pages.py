@@ -14,6 +14,7 @@ from uavlab import plot, scene
 from uavlab.city import Building, City, NoFlyZone
 from uavlab.flight import OffsetProcess, fly
 from uavlab.planners import astar, potential_field, repare, shortcut
+from uavlab.plot.colors import LINES
 from uavlab.plot.ground import MOST_QUADS, ZONE_COLOR
 from uavlab.risk import RiskMap, reference_campus
 from uavlab.route import Route
@@ -112,7 +113,7 @@ def test_notebook_gets_the_page_a_still_picture_and_words(table1, route):
     assert png[25] == 3  # colours by a palette
     assert len(png) < 60_000
     words = metadata["image/png"]["alt"]
-    assert "City of REPARE Table 1" in words or "city of REPARE Table 1" in words
+    assert "The city of REPARE Table 1" in words or "the city of REPARE Table 1" in words
     assert f"A*: {route.length:.1f} m" in words
 
 
@@ -365,7 +366,7 @@ def test_a_still_has_a_title_and_the_scale_of_its_colours(table1, route):
     assert "deaths per hour" in figure.axes[1].get_xlabel()
     search = scene.still(table1, route, expansion=True)
     assert search.axes[1].get_xlabel() == "order in which nodes were expanded"
-    assert ZONE_COLOR not in plot.route_colors(6)
+    assert ZONE_COLOR not in LINES
 
 
 def test_north_is_up_from_above_and_the_scale_bar_has_its_length(table1):

@@ -88,7 +88,7 @@ def table1_city(cell: float = 1.0) -> City:
     >>> from uavlab.city import table1_city
     >>> city = table1_city()
     >>> city
-    <City city of REPARE Table 1: 100 × 100 × 100 voxels of 1 m, 5 buildings>
+    <City the city of REPARE Table 1: 100 × 100 × 100 voxels of 1 m, 5 buildings>
     >>> int(city.occupied.sum())
     144858
     """
@@ -97,6 +97,6 @@ def table1_city(cell: float = 1.0) -> City:
         cell=cell,
         origin=(0, 0, 0),
         size=(100, 100, 100),
-        name="city of REPARE Table 1",
+        name="the city of REPARE Table 1",
         voxels="centres",
     )

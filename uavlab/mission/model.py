@@ -257,7 +257,7 @@ class Mission:
         >>> from uavlab.vehicle import LIGHT_QUADROTOR
         >>> route = Route([(5, 5, 30), (40, 5, 30), (40, 50, 30)])
         >>> print(Mission.from_route(route, table1_city(), LIGHT_QUADROTOR, home=(4.36, 52.01), end="return"))
-        Mission city of REPARE Table 1: 6 items, 5 m/s, altitudes above home, fence of 1 polygon
+        Mission the city of REPARE Table 1: 6 items, 5 m/s, altitudes above home, fence of 1 polygon
             0 take off at 52.0100000°, 4.3600000°, 30.0 m above home
             1 change speed to 5 m/s
             2 waypoint at 52.0100000°, 4.3605097°, 30.0 m above home

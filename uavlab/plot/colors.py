@@ -9,8 +9,6 @@ from typing import NamedTuple
 import matplotlib
 from matplotlib.colors import is_color_like, to_hex
 
-from uavlab import checks
-
 BLACK, BLUE, ORANGE, GREEN, PINK, YELLOW, SKY = (
     "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
 )  # fmt: skip
@@ -26,51 +24,9 @@ PLANNER_COLORS = {
     "PSO-ACO": YELLOW, "BAS": SKY,
 }  # fmt: skip
 """What a planner is drawn in wherever it is drawn; planners that are compared have colours of their own."""
-ROUTE_COLORS = (ORANGE, BLUE, BLACK, PINK, GREEN, YELLOW)
-CONVERGENCE_STYLES = tuple(zip(ROUTE_COLORS, ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2))), strict=True))
-"""Colour and line style of one planner among several: told apart in grey, too."""
 CRASH_COLOR = "#D00000"
 """Of an X; nothing else has that shape, for readers to whom red is brown."""
 SEQUENTIAL = matplotlib.colormaps["cividis"]
-MOST_COLORS = 1_000_000
-"""More of them aren't asked for in earnest."""
-
-
-def route_colors(count: int) -> list[str]:
-    """A colour for each of several routes; after six they come again.
-
-    Parameters
-    ----------
-    count : int
-        How many routes, 0 to a million.
-
-    Returns
-    -------
-    list of str
-        As #rrggbb.
-
-    Raises
-    ------
-    ValueError
-        If `count` is no whole number from 0 to a million.
-
-    See Also
-    --------
-    plan : Draws routes in these colours.
-
-    References
-    ----------
-    M. Okabe and K. Ito, Color Universal Design: How to Make Figures and Presentations That Are Friendly to Colorblind
-    People, 2008.
-
-    Examples
-    --------
-    >>> from uavlab import plot
-    >>> plot.route_colors(2)
-    ['#D55E00', '#0072B2']
-    """
-    count = checks.whole("count", count, 0, MOST_COLORS)
-    return [ROUTE_COLORS[i % len(ROUTE_COLORS)] for i in range(count)]
 
 
 class Style(NamedTuple):

@@ -153,7 +153,7 @@ def section(
     >>> from uavlab.city import table1_city
     >>> figure = plot.section(table1_city(), 30.0)
     >>> figure.axes[0].get_title()
-    'City of REPARE Table 1, 30 m above the ground (buildings black)'
+    'The city of REPARE Table 1, 30 m above the ground (buildings black)'
     """
     planned = drawn_routes(city, routes)
     height = checks.number("height", height)
