@@ -20,7 +20,6 @@
 # *Run All* (in the menu **Run**) brings the 3D scene and the sliders to life.
 
 # %%
-import io
 import itertools
 import math
 from dataclasses import replace
@@ -28,9 +27,7 @@ from functools import partial
 
 import matplotlib.pyplot as plt
 import numpy as np
-from IPython.display import Image
 from matplotlib.colors import LogNorm
-from PIL import Image as Picture
 from scipy import stats
 
 from uavlab import plot, scene
@@ -250,29 +247,20 @@ def scent(axes, tau, title):
 
 
 # %%
-figure, panels = plt.subplots(1, 2, figsize=(7.6, 2.6), dpi=72, layout="constrained", sharey=True)
-
-
 def show_generation(generation):
+    """The scent of both colonies after some generations."""
+    figure, panels = plt.subplots(1, 2, figsize=(7.6, 2.6), dpi=plot.DPI, layout="constrained", sharey=True)
     for axes, (name, route) in zip(panels, colonies.items(), strict=True):
-        axes.clear()
         image = scent(axes, route.info["pheromone"][generation][:, :, 0], f"{name}, after {10 * generation} ants")
-    return image
+    figure.colorbar(image, ax=panels, label="pheromone τ", shrink=0.8)
+    return plot.finished(figure)
 
 
-figure.colorbar(show_generation(0), ax=panels, label="pheromone τ", shrink=0.8)
-pages = []
-for generation in (*range(10), *range(10, 41, 6)):
-    show_generation(generation)
-    figure.canvas.draw()
-    pages.append(Picture.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB").quantize(48))
-plt.close(figure)
-film = io.BytesIO()
-pages[0].save(film, format="PNG", save_all=True, append_images=pages[1:], duration=500, loop=0)
-Image(film.getvalue())
+generations = [*range(10), *range(10, 41, 6)]
+plot.sliders(show_generation, title="scent of two colonies", progress=False, generation=generations)
 
 # %% [markdown]
-# (A film; on paper only its first picture is seen.) The same as stills:
+# (Move the slider to let ten ants at a time leave their scent.) Some of these pictures beside each other:
 
 # %%
 figure, panels = plt.subplots(2, 5, figsize=(11.4, 3.6), dpi=plot.DPI, layout="constrained", sharex=True, sharey=True)

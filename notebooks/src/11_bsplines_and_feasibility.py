@@ -555,7 +555,7 @@ scene.show(campus.city, quickest, {"least risk + B-spline": smoothed}, risk=camp
 # Neither planner knew the limit. One that searches among flyable curves only, by Eq. 7 in the place of "κ < 1", would
 # find some; and a UAV may slow down just where it has to (exercise 11.3).
 #
-# Turn the speed, the bank and the curve yourself. Below which speed is the exact route flyable, and what fails first?
+# Turn the speed and the curve yourself, with 30° of bank. Below which speed is the exact route flyable, and what fails first?
 
 
 # %%
@@ -576,9 +576,8 @@ def turn(curve="exact route", speed=5.0, bank_deg=30.0):
 turn()
 
 # %%
-values = {"curve": list(shown), "speed": [3, 5, 8, 12], "bank_deg": [15, 30, 45]}
-labels, first = {"speed": "speed [m/s]", "bank_deg": "bank [°]"}, {"speed": 5, "bank_deg": 30}
-plot.sliders(turn, title="curvature and pitch", labels=labels, start=first, progress=False, **values)
+values, first = {"curve": list(shown), "speed": [2, 4, 5, 6, 8]}, {"speed": 5}
+plot.sliders(turn, title="curvature and pitch", labels={"speed": "speed [m/s]"}, start=first, progress=False, **values)
 
 # %% [markdown]
 # ## What the papers say, what we find

@@ -113,8 +113,8 @@ def test_notebook_gets_the_page_a_still_picture_and_words(table1, route):
     assert png[25] == 3  # colours by a palette
     assert len(png) < 60_000
     words = metadata["image/png"]["alt"]
-    assert "The city of REPARE Table 1" in words or "the city of REPARE Table 1" in words
-    assert f"A*: {route.length:.1f} m" in words
+    assert "the city of REPARE Table 1" in words
+    assert f'"A*: {route.length:.1f} m" (blue, solid)' in words
 
 
 @pytest.mark.parametrize(

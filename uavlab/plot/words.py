@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from uavlab import checks
-from uavlab.plot.colors import BLACK, BLUE, CRASH_COLOR, GREEN, LINES, ORANGE, PINK, SKY, YELLOW
+from uavlab.plot.colors import BLACK, BLUE, CRASH_COLOR, GREEN, LINES, ORANGE, PINK, SKY, YELLOW, Style
 
 COLOR_WORDS = {
     BLACK: "black", BLUE: "blue", ORANGE: "orange", GREEN: "green", PINK: "pink", YELLOW: "yellow", SKY: "sky blue",
@@ -172,6 +172,12 @@ def bar_words(axes: Axes, bars: BarContainer) -> str:
 def with_look(name: str, thing: Any) -> str:
     """A name in quotes with its colour and line style or marker."""
     return f'"{plain_words(name)}" ({", ".join(looks_of(thing))})'
+
+
+def with_style(name: str, style: Style) -> str:
+    """A name in quotes with its colour and line style."""
+    line = LINE_WORDS.get(style.line, "solid") if isinstance(style.line, str) else DASH_WORDS.get(style.color, "dashed")
+    return f'"{plain_words(name)}" ({color_word(to_rgb(style.color))}, {line})'
 
 
 def looks_of(thing: Any) -> list[str]:

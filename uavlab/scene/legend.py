@@ -9,6 +9,7 @@ from matplotlib.colors import LogNorm
 
 from uavlab.plot.colors import Style, sequential_color
 from uavlab.plot.maps import RISK_LABEL
+from uavlab.plot.words import with_style
 from uavlab.scene.drawing import Drawing, Entry
 
 SIGNS = {
@@ -82,7 +83,8 @@ def words_of(drawing: Drawing) -> str:
     """What a scene shows, in a sentence or two."""
     width, depth, height = np.ptp(drawing.box, axis=0)
     said = [f"Scene in 3D: {drawing.title}, {width:.0f} by {depth:.0f} m on the ground, {height:.0f} m high"]
-    lines = [entry.text for entry in drawing.legend if entry.kind in ("line", "patch", "wind")]
+    lines = [entry.text for entry in drawing.legend if entry.kind in ("patch", "wind")]
+    lines = [with_style(e.text, e.style) for e in drawing.legend if e.style and e.kind in ("line", "thin")] + lines
     if lines:
         said.append("; ".join(lines))
     if drawing.order:

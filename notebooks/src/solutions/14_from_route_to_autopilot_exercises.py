@@ -29,7 +29,7 @@ from dataclasses import replace
 import matplotlib.pyplot as plt
 import numpy as np
 
-from uavlab import exercises
+from uavlab import exercises, plot
 from uavlab.city import Place
 from uavlab.mission import Mission
 from uavlab.planners import astar, least_risk, shortcut
@@ -273,7 +273,7 @@ for margin, color in ((2.0, "C0"), (5.0, "C1")):
     axes.plot([0, end, end, 0], corners, color, label=f"margin of {margin:g} m: {end:.0f} s")
 axes.set(xlabel="time since take-off [s]", ylabel="error to the east [m]", title="GPS drifts away from the take-off")
 axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-plt.show()
+plot.finished(figure)
 
 # %% [markdown] tags=["solution"]
 # We solve $3\,\sigma(t) = m$ for $t$: squared, $1 - e^{-2t/\tau} = (m/3\sigma)^2$, so
