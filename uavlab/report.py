@@ -16,6 +16,8 @@ from uavlab import __version__
 from uavlab.vehicle import WATT_HOUR
 
 if TYPE_CHECKING:  # imported late, so that --help answers at once
+    from matplotlib.figure import Figure
+
     from uavlab.city import City
     from uavlab.flight import Flight, Flights
     from uavlab.risk import RiskMap
@@ -78,8 +80,6 @@ def report(
     risk_map: RiskMap | None,
 ) -> str:
     """The page as HTML: the curve is the answer, or the first route where there is none; others are to compare."""
-    from matplotlib import rc_context
-
     from uavlab import plot, scene
 
     drawn = routes if trial.curve is None else [trial.curve.route(city.cell), *routes[1:]]
@@ -88,11 +88,6 @@ def report(
     shown = drawn[1:] if flights else drawn  # the track covers its curve
     names = [route.planner for route in drawn]
     colors = {name: style.color for name, style in zip(names, plot.styles(names), strict=True)}
-    picture = io.BytesIO()
-    with rc_context({"svg.hashsalt": "uavlab"}):  # same question, same bytes
-        profile = plot.profile(city, *drawn, safe_distance=ball, colors=colors)
-        profile.savefig(picture, format="svg", metadata={"Date": None})
-    drawing = base64.b64encode(picture.getvalue()).decode()
     measured = premises_table(premises) + table(city, routes[0], start, goal)
     if risk_map is not None:
         measured += risk_table(risk_map, routes, trial.curve)
@@ -116,12 +111,25 @@ def report(
                 colors=colors,
             )
         ),
-        profile=f'<img alt="height and clearance along the route" src="data:image/svg+xml;base64,{drawing}">',
+        profile=picture_of(plot.profile(city, *drawn, safe_distance=ball, colors=colors)),
         rows=rows,
         limits=limits,
         read=read,
         version=__version__,
     )
+
+
+def picture_of(figure: Figure) -> str:
+    """A figure as a drawing within the page, with words for those who don't see it."""
+    from matplotlib import rc_context
+
+    from uavlab.plot import alt_text
+
+    drawn = io.BytesIO()
+    with rc_context({"svg.hashsalt": "uavlab"}):  # same question, same bytes
+        figure.savefig(drawn, format="svg", metadata={"Date": None})
+    drawing = base64.b64encode(drawn.getvalue()).decode()
+    return f'<img alt="{html.escape(alt_text(figure))}" src="data:image/svg+xml;base64,{drawing}">'
 
 
 def grounded_page(city: City, premises: Premises) -> str:

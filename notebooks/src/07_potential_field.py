@@ -548,22 +548,13 @@ for name in list(settings)[4:]:
     assert 1.02 < measured[name][0][0] < 1.09
 
 # %%
-figure, axes = plot.new_figure(8.2, 3.9)
-styles = (("A*", BLUE, "o"), ("REPARE", ORANGE, "s"), ("A* + shortcut", GREEN, "D"))
-for column, (other, color, marker) in enumerate(styles):
-    values = np.array([rows[column] for rows in measured.values()])
-    error = np.abs(values[:, 1:] - values[:, :1]).T
-    spots = np.arange(len(values)) + 0.15 * (column - 1)
-    axes.errorbar(values[:, 0], spots, xerr=error, fmt=marker, color=color, capsize=3, label=f"{other}, measured")
-for other, color, style, printed in (("A*", BLUE, "--", 0.952), ("REPARE", ORANGE, ":", 0.973)):
-    axes.axvline(printed, color=color, linestyle=style, label=f"{other}, as printed (Table 2)")
-axes.axvline(1.0, color="0.5", linewidth=0.8)
-axes.set_yticks(range(len(measured)), [f"{name} ({1 - arrived[name].mean():.0%} fail)" for name in measured])
-axes.invert_yaxis()
-axes.set_xlabel("length / length of the potential field's route, mean with 95 % interval")
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+rows = {name: f"{name} ({1 - arrived[name].mean():.0%} fail)" for name in measured}
+others = {
+    other: {rows[name]: tuple(values[column]) for name, values in measured.items()}
+    for column, other in enumerate(("A*", "REPARE", "A* + shortcut"))
+}
+printed = {"equal": 1.0, "A* as\nprinted": 0.952, "REPARE as\nprinted": 0.973}
+plot.intervals(others, "length / length of the potential field's route, mean", places=printed, digits=2)
 
 # %% [markdown]
 # * **On the lattice Table 2 is right**, with two settings that were chosen for it (the first two rows): both lengths

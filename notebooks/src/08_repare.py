@@ -756,10 +756,10 @@ for (name, case), color, style in zip(cases.items(), (BLUE, BLACK, ORANGE), ("-"
     now = flight_conditions(*case)
     sigma = (now.safe_distance - 0.5) / 3
     smooth = 3000 / 5 * offsets.crossing_rate(away - 0.5, sigma)
-    axes.semilogy(away, smooth, style, color=color, linewidth=2, label=f"hazard, σ = {sigma:.2f} m")
+    axes.semilogy(away, smooth, style, color=color, linewidth=2, label=f"price by hazard, σ = {sigma:.2f} m")
     centre, extra = wall.clearance[2:, 1, 1], repare_price(wall, now)[2:, 1, 1] - 1
     zone = extra > 0
-    axes.semilogy(centre[zone], extra[zone], "o" + style, color=color, linewidth=0.8, label=f"REPARE, {name}")
+    axes.semilogy(centre[zone], extra[zone], "o" + style, color=color, linewidth=0.8, label=f"price of REPARE, {name}")
 axes.set(xlabel="distance to the wall [m]", ylabel="price of a metre, above 1", xlim=(0, 10), ylim=(1e-3, 1e3))
 axes.set_yticks([0.001, 0.01, 0.1, 1, 10, 100, 1000], ["0.001", "0.01", "0.1", "1", "10", "100", "1000"])
 axes.grid(alpha=0.3)

@@ -35,7 +35,7 @@ def test_a_planner_has_one_colour_and_line_style_throughout(path):
     looks = {}
     for number, text in texts_of(path):
         for name, color, line in LINE.findall(text):
-            thing = re.sub(r"[,:] .*", "", name)
+            thing = re.sub(r", [\d.]+ m$|: .*$", "", name)
             if thing in PLANNERS and line in STYLES:
                 looks.setdefault(thing, {}).setdefault((color, line), []).append(number)
     for thing, found in looks.items():
