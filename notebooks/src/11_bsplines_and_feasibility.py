@@ -39,6 +39,7 @@ from uavlab.vehicle import GRAVITY, RISK_QUADROTOR
 # %%
 # NBVAL_CHECK_OUTPUT
 BLACK, BLUE, GREEN, ORANGE, PINK, YELLOW = plot.BLACK, plot.BLUE, plot.GREEN, plot.ORANGE, plot.PINK, plot.YELLOW
+COLORS = {"least risk + B-spline": BLACK, "swarm, 1 free": ORANGE, "PSO-BAS, its B-spline": GREEN}
 uav = RISK_QUADROTOR
 print(f"{uav.name}: {uav.diameter:g} m wide, cruises at {uav.cruise_speed:g} m/s, {uav.thrust:g} N of thrust")
 
@@ -368,7 +369,7 @@ for curve in (smoothed, of_swarm):
     per_voxel = campus.city.cell * sharpest
     print(f"{curve.planner:<22} κ ≤ {sharpest:.3f} 1/m = {per_voxel:.2f} per voxel, pitch ≤ {steepest:.1f}°")
 assert campus.city.cell * smoothed.curvature.max() < 1 < campus.city.cell * of_swarm.curvature.max()
-plot.curve_profile(smoothed, of_swarm, speed=uav.cruise_speed, cell=campus.city.cell)
+plot.curve_profile(smoothed, of_swarm, speed=uav.cruise_speed, cell=campus.city.cell, colors=COLORS)
 
 # %% [markdown]
 # So the claim can be met: on the exact route κ stays below 1 per voxel and the pitch is at most 45°, without a jump.
@@ -546,10 +547,10 @@ assert 11.5 < its_speed < 12
 assert 1.3 < more < 1.5
 assert quicker < 0.5
 display(feasibility(quickest, campus.city, uav))
-plot.curve_profile(smoothed, quickest, speed=uav.cruise_speed, cell=campus.city.cell)
+plot.curve_profile(smoothed, quickest, speed=uav.cruise_speed, cell=campus.city.cell, colors=COLORS)
 
 # %%
-scene.show(campus.city, quickest, {"least risk + B-spline": smoothed}, risk=campus, uav=campus.uav)
+scene.show(campus.city, quickest, {"least risk + B-spline": smoothed}, risk=campus, uav=campus.uav, colors=COLORS)
 
 # %% [markdown]
 # Neither planner knew the limit. One that searches among flyable curves only, by Eq. 7 in the place of "κ < 1", would
@@ -566,10 +567,9 @@ def turn(curve="exact route", speed=5.0, bank_deg=30.0):
     """A curve's curvature and pitch, and which limits it breaks."""
     bank = np.radians(bank_deg)
     limits = feasibility(shown[curve], campus.city, uav, speed=speed, bank=bank).limits
-    figure = plot.curve_profile(shown[curve], speed=speed, cell=campus.city.cell, bank=bank)
-    figure.suptitle(
-        "beyond: " + (", ".join(limit.name for limit in limits if not limit.met) or "no limit"), fontsize=10
-    )
+    figure = plot.curve_profile(shown[curve], speed=speed, cell=campus.city.cell, bank=bank, colors=COLORS)
+    beyond = ", ".join(limit.name for limit in limits if not limit.met) or "no limit"
+    figure.axes[0].set_title(f"beyond: {beyond}", fontsize=10)
     return figure
 
 

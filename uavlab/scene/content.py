@@ -129,7 +129,7 @@ def way(drawing: Drawing, name: str, points: np.ndarray, style: Style, *, thickn
     for part, across, known in ((name, width, drawing.far_only), (f"{name} near", thin, drawing.near_only)):
         pieces = [tube(piece, across / 2) for piece in dashed(thinned(points, 0.1 * across), style.line, width)]
         if sum(map(len, pieces)):
-            drawing.parts[part] = Surface(np.concatenate(pieces), style.color)
+            drawing.parts[part] = Surface(np.concatenate(pieces), style.color, closed=True)
             known.add(part)
     drawing.closeup = CLOSEUP * width_of(drawing)
     show_too(drawing, points)

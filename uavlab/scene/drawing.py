@@ -28,6 +28,8 @@ class Surface:
     opacity: float = 1.0
     lit: bool = True
     """Whether its brightness depends on how it lies to the light."""
+    closed: bool = False
+    """Whether it is seen from outside only: that is drawn in half of the time."""
 
     @property
     def colors(self) -> np.ndarray:
@@ -170,7 +172,7 @@ class Drawing:
 def moved(surface: Surface, place: np.ndarray, turn: np.ndarray) -> Surface:
     """A surface about the origin, turned by a quaternion and brought to a place."""
     triangles = Rotation.from_quat(turn).apply(surface.triangles.reshape(-1, 3)).reshape(-1, 3, 3) + place
-    return Surface(triangles, surface.color, surface.opacity, surface.lit)
+    return Surface(triangles, surface.color, surface.opacity, surface.lit, surface.closed)
 
 
 def plain_values(values: np.ndarray, digits: int) -> list[Any]:

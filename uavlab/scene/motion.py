@@ -76,6 +76,6 @@ def mover(
     time: np.ndarray, points: np.ndarray, style: Style, uav: UAV, wind: Wind, safe_distance: float | None
 ) -> Mover:
     """A UAV at its size, in the colour of its track, with the ball of the distance to keep."""
-    body = Surface(*quadrotor(uav.diameter, to_rgb(style.color)))
+    body = Surface(*quadrotor(uav.diameter, to_rgb(style.color)), closed=True)
     around = None if safe_distance is None else Surface(ball(safe_distance), style.color, opacity=0.22)
     return Mover(style.color, time, points, turned(time, points, uav, wind), body, around)

@@ -132,12 +132,13 @@ def geometry_of(surface: Surface, center: np.ndarray) -> Joined:
 
 
 def material_of(surface: Surface) -> g.GenericMaterial:
-    """Seen from both sides; glass hides nothing behind it."""
+    """Seen from both sides, unless it is closed; glass hides nothing behind it."""
     kind = g.MeshLambertMaterial if surface.lit else g.MeshBasicMaterial
     glass = {**THROUGH, "opacity": surface.opacity} if surface.opacity < 1 else {}
+    side = 0 if surface.closed else 2
     if isinstance(surface.color, str):
-        return kind(color=as_number(to_hex(surface.color)), side=2, **glass)
-    return kind(vertexColors=True, side=2, **glass)
+        return kind(color=as_number(to_hex(surface.color)), side=side, **glass)
+    return kind(vertexColors=True, side=side, **glass)
 
 
 def as_number(color: str) -> int:

@@ -109,6 +109,7 @@ def draw_city(drawing: Drawing, city: City) -> None:
         return
     surfaces = [building.triangles() for building in city.buildings]
     triangles, colors = np.concatenate(surfaces), colors_of(city, [len(surface) for surface in surfaces])
+    count = len(triangles)
     edges = np.concatenate([building.edges() for building in city.buildings])
     if len(triangles) > MOST_TRIANGLES:
         kept = not_twice(triangles)
@@ -116,7 +117,7 @@ def draw_city(drawing: Drawing, city: City) -> None:
         edges = edges.reshape(-1, 2, 3)
         edges = edges[np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) > 4 * THIN]
         edges = edges[not_twice(edges)].reshape(-1, 3)
-    drawing.parts["buildings"] = Surface(triangles, colors)
+    drawing.parts["buildings"] = Surface(triangles, colors, closed=len(triangles) == count)
     drawing.parts["edges"] = Lines(edges, EDGE_COLOR)
     show_too(drawing, triangles)
 
@@ -141,7 +142,7 @@ def draw_voxels(drawing: Drawing, city: City) -> None:
     if not occupied.any():
         return
     surface = voxel_surface(city)
-    drawing.parts["voxels"] = Surface(surface, VOXEL_COLOR)
+    drawing.parts["voxels"] = Surface(surface, VOXEL_COLOR, closed=True)
     show_too(drawing, surface)
     edges = voxel_edges(city)
     if len(edges) <= 2 * MOST_EDGES:

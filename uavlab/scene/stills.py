@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import fill
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -151,7 +152,8 @@ def picture_of(drawing: Drawing, camera: Camera, moment: float, size: float) -> 
 
 def legend_height(drawing: Drawing) -> float:
     """Room for the legend and a scale [inches]."""
-    return 0.3 + 0.19 * -(-len(drawing.legend) // 2) + 0.55 * bool(drawing.risk is not None or drawing.order)
+    lines = sum(-(-len(entry.text) // 52) for entry in drawing.legend)
+    return 0.3 + 0.19 * -(-lines // 2) + 0.55 * bool(drawing.risk is not None or drawing.order)
 
 
 def draw_signs(axes: Axes, frame: Frame, drawing: Drawing, moment: float) -> None:
@@ -206,7 +208,7 @@ def draw_compass(axes: Axes, frame: Frame, view: View, drawing: Drawing) -> None
 
 def handle_of(entry: Entry) -> Line2D | Patch:
     """A line of the legend as matplotlib has it."""
-    label = plain(entry.text)
+    label = fill(plain(entry.text), 52)
     if entry.kind in SIGNS:
         return Line2D([], [], linestyle="", markersize=8, color=entry.color, label=label, **SIGNS[entry.kind])
     if entry.kind in ("patch", "ball"):
