@@ -21,7 +21,6 @@ import tempfile
 import warnings
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 from sklearn.metrics import confusion_matrix
 
@@ -51,22 +50,21 @@ print(f"calm in {(hours.wind_speed == 0).mean():.0%} of the hours")
 assert len(hours) == 8760
 assert set(FEATURES) <= set(hours.columns)
 
-# %%
-figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.0), dpi=plot.DPI, layout="constrained")
-axes[0].hist(hours.wind_speed, bins=np.arange(0, 17), color=plot.BLUE, edgecolor="white")
-axes[0].set(xlabel="wind speed [m/s]", ylabel="hours a year")
-axes[1].hist(hours.wind_from_deg[hours.wind_speed > 0], bins=np.arange(-5, 366, 10), color=plot.BLUE)
-axes[1].set(xlabel="wind from [degrees from north]", ylabel="hours a year", xticks=[0, 90, 180, 270, 360])
-by_hour = hours.groupby((hours.index + 1) % 24)
-for name, label, color in (
-    ("radiation", "radiation [W/m²]", plot.YELLOW),
-    ("wind_speed", "wind [0.01 m/s]", plot.BLUE),
+# %% tags=["figure"]
+figure, panels = plot.new_panels(2, 2, height=5.4)
+by_hour, colors = hours.groupby((hours.index + 1) % 24), {"radiation": plot.YELLOW, "wind": plot.BLUE}
+for axes, values, edges, label in (
+    (panels[0], hours.wind_speed, np.arange(0, 17), "wind speed [m/s]"),
+    (panels[1], hours.wind_from_deg[hours.wind_speed > 0], np.arange(-5, 366, 10), "wind from [degrees from north]"),
 ):
-    mean = by_hour[name].mean() * (100 if name == "wind_speed" else 1)
-    axes[2].plot(mean.index, mean, color=color, label=label)
-axes[2].set(xlabel="hour of the day", ylabel="mean over the year", xticks=[0, 6, 12, 18, 24], ylim=(-20, 790))
-axes[2].legend(fontsize=8)
-plot.finished(figure)
+    counts, _ = np.histogram(values, edges)
+    middles = (edges[:-1] + edges[1:]) / 2
+    plot.lines(middles, {"wind": counts}, label, "hours a year", steps=True, colors=colors, axes=axes)
+for axes, name, label in ((panels[2], "wind_speed", "wind [m/s]"), (panels[3], "radiation", "radiation [W/m²]")):
+    mean = by_hour[name].mean()
+    plot.lines(mean.index, {name.split("_")[0]: mean}, "hour of the day", f"{label}, mean", colors=colors, axes=axes)
+panels[1].set_xticks([0, 90, 180, 270, 360])
+figure
 
 # %% [markdown]
 # The wind rises and falls with the sun, so the features are not independent of each other. That will matter.
@@ -115,23 +113,18 @@ assert table4 == [3.5, 4.5, 5.5]
 # %%
 winds = np.linspace(0, 10, 101)
 base = {"temperature_c": 15.0, "humidity_percent": 60.0, "pressure_hpa": 985.0, "wind_speed": winds}
-figure, axes = plot.new_figure(6.6, 3.9)
-for label, angle, sun, color, style, level in (
-    ("along the streets, sunny", 60.0, 800.0, plot.ORANGE, "-", 5),
-    ("along the streets, night", 60.0, 0.0, "#000000", "--", 4),
-    ("across the streets, sunny", 150.0, 800.0, plot.BLUE, "-.", 2),
+medians = {}
+for label, angle, sun, level in (
+    ("along the streets, sunny", 60.0, 800.0, 5),
+    ("along the streets, night", 60.0, 0.0, 4),
+    ("across the streets, sunny", 150.0, 800.0, 2),
 ):
     weather = {name: np.broadcast_to(v, winds.shape) for name, v in (base | {"wind_from_deg": angle}).items()}
-    median = prediction.median_offsets(weather | {"radiation": np.full(winds.shape, sun)}, LIGHT_QUADROTOR)
-    assert np.ceil(np.interp(5.5, winds, median)) == level
-    axes.plot(winds, median, color=color, linestyle=style, label=label)
-    axes.fill_between(winds, median * np.exp(-0.21), median * np.exp(0.21), color=color, alpha=0.15, linewidth=0)
-axes.set(
-    xlabel="wind at the station [m/s]", ylabel="offset ξ [m], median and ± one spread", ylim=(0, 7), yticks=range(8)
-)
-axes.grid(axis="y", alpha=0.4)
-axes.legend(fontsize=8)
-plot.finished(figure)
+    medians[label] = prediction.median_offsets(weather | {"radiation": np.full(winds.shape, sun)}, LIGHT_QUADROTOR)
+    assert np.ceil(np.interp(5.5, winds, medians[label])) == level
+spread_of = {label: (median * np.exp(-0.21), median * np.exp(0.21)) for label, median in medians.items()}
+plot.lines(winds, medians, "wind at the station [m/s]", "offset ξ [m], median", bands=spread_of,
+           band_label="± one spread", y_range=(0, 7))  # fmt: skip
 
 # %% [markdown]
 # The horizontal lines are where the class changes. The median of the same wind, 5.5 m/s, is class 2 or class 5,
@@ -151,19 +144,18 @@ for name, data in tables.items():
     assert data.features.shape == (7330, 6)
     assert data.test.sum() == 1466
 
-# %%
-figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.4), dpi=plot.DPI, layout="constrained", sharey=True)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, share="y", width=9.0)
 data = tables["greensboro"]
-for one, name, label in (
-    (axes[0], "wind_speed", "wind speed [m/s]"),
-    (axes[1], "wind_from_deg", "wind from [degrees from north]"),
+for axes, name, label, title in (
+    (panels[0], "wind_speed", "wind speed [m/s]", "wind speed: a band"),
+    (panels[1], "wind_from_deg", "wind from [degrees from north]", "direction: two humps"),
 ):
-    one.scatter(data.features[name][::3], data.offsets[::3], s=4, c=data.classes[::3], cmap=plot.SEQUENTIAL, alpha=0.7)
-    one.set(xlabel=label, ylim=(0, 9))
-    one.grid(axis="y", alpha=0.4)
-axes[0].set(ylabel="simulated offset [m]", yticks=range(10), title="wind speed: a band")
-axes[1].set(xticks=[0, 60, 150, 240, 330], title="direction: two humps")
-plot.finished(figure)
+    pairs = np.column_stack([data.features[name], data.offsets])[::3]
+    by_class = {f"class {k}": pairs[data.classes[::3] == k] for k in range(1, 7)}
+    plot.points(by_class, label, "simulated offset [m]", y_range=(0, 9), title=title, axes=axes)
+panels[1].set_xticks([0, 60, 150, 240, 330])
+figure
 
 # %% [markdown]
 # (Colour: the class, dark for 1 and bright for 6 and above.) Two humps over the direction: no straight line can follow
@@ -192,25 +184,20 @@ assert abs(paper.accuracy["XGBClassifier"] - 0.72852) < 0.02
 assert abs(paper.accuracy["Ridge"] - 0.56) < 0.02
 assert paper.r2["Ridge"] > 0.5
 
-# %%
+# %% tags=["figure"]
 T_8 = 2.365  # Student's t for 8 values: 95 % of single runs lie within T_8 √(1 + 1/8) standard deviations
 reach = T_8 * np.sqrt(1 + 1 / 8)
 printed = {"Ridge": 9.424, "GaussianNB": 59.426, "XGBClassifier": 72.852}
-figure, axes = plot.new_figure(6.8, 3.9)
-place = np.arange(3)
-bars = [
-    axes.bar(place - 0.27, printed.values(), 0.25, color="0.6", label="REPARE Fig. 4"),
-    axes.bar(place, 100 * paper.accuracy[list(printed)], 0.25, color=plot.BLUE, label="ours: accuracy",
-             yerr=100 * reach * spread.accuracy[list(printed)], capsize=4),
-    axes.bar(place + 0.27, 100 * paper.r2[list(printed)], 0.25, color=plot.YELLOW, label="ours: R²",
-             yerr=100 * reach * spread.r2[list(printed)], capsize=4),
-]  # fmt: skip
-for drawn, digits in zip(bars, (3, 0, 0), strict=True):
-    axes.bar_label(drawn, fmt=f"%.{digits}f", label_type="center", fontsize=8, color="black",
-                   bbox={"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.8})  # fmt: skip
-axes.set(ylabel="[%]; bars: 95 % of single runs", ylim=(0, 95), xticks=place, xticklabels=list(printed))
-axes.legend(fontsize=8, loc="upper left")
-plot.finished(figure)
+
+
+def with_reach(measure):
+    """Each model's mean and the ends of its single runs [%]."""
+    middle, half = 100 * paper[measure], 100 * reach * spread[measure]
+    return {name: (middle[name], middle[name] - half[name], middle[name] + half[name]) for name in printed}
+
+
+scores = {"REPARE Fig. 4": printed, "ours: accuracy": with_reach("accuracy"), "ours: R²": with_reach("r2")}
+plot.intervals(scores, "score [%]", level="95 % (of single runs)", digits=1, x_range=(0, 100))
 
 # %% [markdown]
 # GaussianNB and XGBClassifier land where the paper has them. That is no confirmation: we looked for such a setting
@@ -264,20 +251,12 @@ for name, measure in (("Ridge", "r2"), ("GaussianNB", "accuracy"), ("XGBClassifi
 print(f"Ridge's accuracy: {steady_mean.accuracy['Ridge']:.0%}")
 assert 0.43 < steady_mean.accuracy["Ridge"] < 0.52
 
-# %%
-figure, axes = plot.new_figure(6.8, 2.6)
-for row, (name, measure) in enumerate((("Ridge", "r2"), ("GaussianNB", "accuracy"), ("XGBClassifier", "accuracy"))):
-    runs = 100 * steady.loc[steady.model == name, measure]
-    axes.plot(
-        runs, np.full(len(runs), row), "o", color=plot.BLUE, alpha=0.6, label="ours, 8 tables" if not row else None
-    )
-    axes.plot(printed[name], row, "|", color=plot.ORANGE, markersize=26, markeredgewidth=3,
-              label=None if row else "printed in REPARE")  # fmt: skip
-axes.set(yticks=range(3), yticklabels=["Ridge: R²", "GaussianNB: accuracy", "XGBClassifier: accuracy"])
-axes.set(xlabel="[%]", xlim=(0, 100), ylim=(2.6, -0.6))
-axes.legend(fontsize=8, loc="upper right", markerscale=0.5)
-axes.grid(axis="x", alpha=0.4)
-plot.finished(figure)
+# %% tags=["figure"]
+measures = {"Ridge": "r2", "GaussianNB": "accuracy", "XGBClassifier": "accuracy"}
+rows = {name: f"{name}: {measure.replace('r2', 'R²')}" for name, measure in measures.items()}
+ours = {rows[name]: 100 * steady.loc[steady.model == name, measure] for name, measure in measures.items()}
+theirs = {rows[name]: [printed[name]] for name in measures}
+plot.runs({"ours, 8 tables": ours, "printed in REPARE": theirs}, "score [%]", x_range=(0, 100))
 
 # %% [markdown]
 # So the three are possible together *if Ridge's is an $R^2$*: each printed figure lies where a single run may fall.
@@ -294,14 +273,9 @@ data = tables["paper"]
 true = data.classes[data.test]
 predicted = prediction.MODELS["XGBClassifier"](data)
 matrix = confusion_matrix(true, predicted, labels=range(1, 7))
-figure, axes = plot.new_figure(5.4, 4.4)
-image = axes.imshow(matrix / matrix.sum(axis=1, keepdims=True), cmap=plot.SEQUENTIAL, vmin=0, vmax=1)
-for (i, j), count in np.ndenumerate(matrix):
-    axes.text(j, i, count, ha="center", va="center", color="black" if matrix[i, j] > 0.5 * matrix[i].sum() else "white")
-ticks = {"xticks": range(6), "yticks": range(6), "xticklabels": range(1, 7), "yticklabels": range(1, 7)}
-axes.set(xlabel="predicted class", ylabel="true class", title="XGBClassifier, 1466 samples", **ticks)
-figure.colorbar(image, label="share of the true class")
-plot.finished(figure)
+classes = [str(k) for k in range(1, 7)]
+plot.matrix(matrix, classes, classes, "true class", "predicted class", "share of the true class", shares=True,
+            title="XGBClassifier, 1466 samples")  # fmt: skip
 
 # %%
 too_low, too_high = np.tril(matrix, -1).sum(), np.triu(matrix, 1).sum()
@@ -339,8 +313,10 @@ print("from most to least:", ", ".join(importance))
 assert list(importance)[:2] == ["wind_speed", "wind_from_deg"]
 assert importance["wind_speed"] > 25 > importance["wind_from_deg"] > 5 > importance["humidity_percent"]
 
-# %%
-plot.bars(importance, "accuracy lost when shuffled [percentage points]", title="Greensboro, mean of 10 shuffles")
+# %% tags=["figure"]
+sure = {name: 2.262 * np.std(drops, ddof=1) / np.sqrt(10) for name, drops in lost.items()}  # Student's t for 10 values
+losses = {name.replace("_", " "): (m, m - sure[name], m + sure[name]) for name, m in importance.items()}
+plot.intervals({"XGBoost, Greensboro": losses}, "accuracy lost when shuffled [percentage points]", digits=1)
 
 # %% [markdown]
 # Wind speed, then direction, then radiation; humidity and pressure hardly change the air's density. (A loss below 0 is
@@ -398,22 +374,13 @@ for table in (paper, real):
     assert table.bayes_gap["log-offset"] < 0.5 * table.bayes_gap["ordinal"]
     assert list(table.bayes_gap[names]) == sorted(table.bayes_gap[names], reverse=True)
 
-# %%
-figure, axes = plot.new_figure(6.8, 3.6)
-place = np.arange(len(names))
+# %% tags=["figure"]
 gap = each.groupby("model", sort=False).bayes_gap
-half = T_8 * gap.sem()
-for shift, values, errors, color, label in (
-    (-0.2, gap.mean()[names], half[names], plot.BLUE, "paper's setting"),
-    (0.2, real.bayes_gap[names], (real.bayes_gap_high - real.bayes_gap)[names], plot.YELLOW, "Greensboro"),
-):
-    drawn = axes.barh(place + shift, 100 * values, 0.38, xerr=100 * errors, color=color, label=label, capsize=3)
-    axes.bar_label(drawn, fmt="%.1f", padding=5, fontsize=8)
-axes.set(yticks=place, yticklabels=names, xlabel="accuracy below the Bayes limit [points], with 95 % interval")
-axes.invert_yaxis()
-axes.margins(x=0.1)
-axes.legend(fontsize=8, loc="lower right")
-plot.finished(figure)
+half, middle = T_8 * gap.sem(), gap.mean()
+ours = {name: 100 * np.array([middle[name], middle[name] - half[name], middle[name] + half[name]]) for name in names}
+real_half = real.bayes_gap_high - real.bayes_gap
+theirs = {name: 100 * (real.bayes_gap[name] + np.array([0, -1, 1]) * real_half[name]) for name in names}
+plot.intervals({"paper's setting": ours, "Greensboro": theirs}, "accuracy below the Bayes limit [points]", digits=1)
 
 # %% [markdown]
 # The regression of the logarithm comes within one point and a half of the limit, in both settings; XGBClassifier lacks
@@ -443,24 +410,17 @@ assert low["95 % quantile regression"] < 2.5
 assert 0.4 < excess["95 % quantile"] < 0.8
 
 # %%
-figure, axes = plot.new_figure(6.8, 4.2)
 data, quantiles = tables["paper"], np.array([0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.975, 0.99])
 curve = np.array([[(k < data.classes).mean(), np.maximum(k - data.classes, 0).mean()] for k in (
     prediction.offset_class(np.exp(data.log_median + data.noise * z))
     for z in (0.0, 0.2533, 0.5244, 0.8416, 1.2816, 1.6449, 1.9600, 2.3263)
 )])  # fmt: skip
-axes.plot(100 * curve[:, 0], curve[:, 1], "--", color="0.5", label="physics known, quantiles 50 to 99 %")
-for q, shift in ((0, (-12, 11)), (2, (6, 4)), (4, (6, 4)), (7, (8, -2))):
-    place = (100 * curve[q, 0], curve[q, 1])
-    axes.annotate(f"{quantiles[q]:.0%}", place, shift, textcoords="offset points", fontsize=8, color="0.3")
-for name, look, marker in zip(low.index, plot.styles(list(low.index)), "sDo^vP*", strict=True):
-    axes.plot(low[name], excess[name], marker, color=look.color, markersize=9, label=name)
-axes.axvline(1.5, color="0.6", linewidth=1, label="1.5 % too low")
-axes.set(
-    xlabel="class too low: unsafe flights [%]", ylabel="excess: classes too high, mean", xlim=(0, 32), ylim=(0, 0.9)
-)
-axes.legend(fontsize=8)
-plot.finished(figure)
+known = "physics known, quantiles 50 to 99 %"
+notes = {f"{quantiles[q]:.1%}".replace(".0%", "%"): (100 * curve[q, 0], curve[q, 1]) for q in (0, 2, 4, 5, 7)}
+models = {name: [(low[name], excess[name])] for name in low.index}
+plot.lines(100 * curve[:, 0], {known: curve[:, 1]}, "class too low: unsafe flights [%]",
+           "excess: classes too high, mean", points=models, places={"1.5 %\ntoo low": 1.5}, notes=notes,
+           x_range=(0, 32), y_range=(0, 0.9), colors={known: "0.5"})  # fmt: skip
 
 # %% [markdown]
 # Left of the grey line at most 1.5 % of the flights are pushed further than predicted. The quantile of the residuals
@@ -490,20 +450,17 @@ print("hour  wind [m/s]  from [°]")
 for hour in (0, 6, 12, 14, 18):
     print(f"{hour + 1:4d}  {tomorrow.wind_speed.iloc[hour]:10.1f}  {tomorrow.wind_from_deg.iloc[hour]:8.0f}")
 
-# %%
+# %% tags=["figure"]
 truth = prediction.median_offsets(tomorrow, LIGHT_QUADROTOR)
 clock = np.arange(1, 25)
-figure, axes = plot.new_figure(7.2, 4.0)
-axes.fill_between(clock, truth * np.exp(-1.96 * 0.21), truth * np.exp(1.96 * 0.21), color="0.85",
-                  label="95 % of the simulated flights")  # fmt: skip
-axes.plot(clock, truth, color="0.4", label="their median")
-axes.step(
-    clock, predictor.predict_class(tomorrow), where="mid", color=plot.BLUE, linestyle="--", label="most probable class"
-)
-axes.step(clock, upper, where="mid", color=plot.ORANGE, linewidth=2, label="rounded up: 95 % quantile class")
-axes.set(xlabel="hour of the day", ylabel="offset ξ [m]", xticks=range(0, 25, 3), ylim=(0, None))
-axes.legend(fontsize=8, loc="upper left")
-plot.finished(figure)
+inner = {"95 % of the simulated flights": (truth * np.exp(-1.96 * 0.21), truth * np.exp(1.96 * 0.21))}
+said = {
+    "their median": truth,
+    "most probable class": predictor.predict_class(tomorrow),
+    "rounded up: 95 % quantile class": upper,
+}
+plot.lines(clock, said, "hour of the day", "offset ξ [m]", bands=inner, steps=True,
+           colors={"their median": plot.BLACK, "95 % of the simulated flights": "0.7"})  # fmt: skip
 
 # %%
 sigma = predictor.predict_sigma(tomorrow)

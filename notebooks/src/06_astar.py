@@ -22,9 +22,7 @@ import heapq
 import math
 import time
 
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import ListedColormap
 
 from uavlab import plot, scene
 from uavlab.city import City, table1_city
@@ -79,24 +77,21 @@ for place, count in legal.items():
     print(f"obstacle across {place:<8}: {count} of 26 moves are legal")
 assert legal == {"a face": 17, "an edge": 23, "a corner": 25}
 
-# %%
-figure, axes = plot.new_figure(5.6, 3.7)
-axes.add_patch(plt.Rectangle((0.5, -0.5), 1, 1, color="0.35", label="obstacle"))
+# %% tags=["figure"]
 ways = {target for target, _ in neighbours(cube - {(1, 0, 0)}, (0, 0, 0))}
-for x, y, z in MOVES:
-    if z == 0:
-        color, style = (plot.BLUE, "-") if (x, y, z) in ways else (plot.ORANGE, "--")
-        arrow = {"arrowstyle": "-|>", "color": color, "linestyle": style, "linewidth": 2}
-        axes.annotate("", (0.95 * x, 0.95 * y), (0, 0), zorder=3, arrowprops=arrow)
-axes.plot([], [], color=plot.BLUE, label="legal")
-axes.plot([], [], color=plot.ORANGE, linestyle="--", label="forbidden: its box\nis not free")
-axes.set(xlim=(-1.5, 1.5), ylim=(-1.5, 1.5), aspect="equal", xlabel="x [cells]", ylabel="y [cells]")
-for axis in (axes.xaxis, axes.yaxis):
+level = [move for move in MOVES if move[2] == 0]
+arrows = {
+    name: [[(0, 0), (0.95 * x, 0.95 * y)] for x, y, z in level if ((x, y, z) in ways) == legal_one]
+    for name, legal_one in (("legal", True), ("forbidden: its box is not free", False))
+}
+square = [(0.5, -0.5), (1.5, -0.5), (1.5, 0.5), (0.5, 0.5)]
+figure = plot.diagram("x [cells]", "y [cells]", areas={"obstacle": square}, arrows=arrows, x_range=(-1.5, 1.5),
+                      y_range=(-1.5, 1.5), colors={"obstacle": "0.35"})  # fmt: skip
+for axis in (figure.axes[0].xaxis, figure.axes[0].yaxis):
     axis.set_ticks([-1, 0, 1])
     axis.set_ticks([-0.5, 0.5], minor=True)
-axes.grid(which="minor", color="0.8")
-axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8)
-plot.finished(figure)
+figure.axes[0].grid(which="minor", color="0.8")
+figure
 
 # %% [markdown]
 # The forbidden diagonals run exactly along a corner of the obstacle. A UAV has a body, so it would hit.
@@ -443,16 +438,11 @@ assert forth[-1] == back[0] == 12
 # stays in the open. There, 16 is less than 17: it takes the detour. Back, 14 is less than 16: it flies through the
 # zone.
 
-# %%
-figure, axes = plot.new_figure(7.2, 3.2)
-axes.axvspan(7.5, 10.5, color="0.88", label="in the zone")
-axes.plot(east, forth, "o-", color=plot.ORANGE, label="T of the corridor, there (→)")
-axes.plot(east, back, "s-", color=plot.BLUE, label="T of the corridor, back (←)")
-axes.axhline(16, color="0.3", linestyle="--", label="highest T of the detour")
-axes.axhline(12, color="0.3", linestyle=":", label="length of the corridor")
-axes.set(xlabel="place in the corridor [m]", ylabel="T [m]", ylim=(11, 18))
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+# %% tags=["figure"]
+corridor = {"T of the corridor, there (→)": forth, "T of the corridor, back (←)": back}
+limits = {"highest T of\nthe detour": 16, "length of\nthe corridor": 12}
+plot.lines(east, corridor, "place in the corridor [m]", "T [m]", places={"in the zone": (7.5, 10.5)}, limits=limits,
+           y_range=(11, 18))  # fmt: skip
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -505,15 +495,10 @@ for omega in (0.1, 0.2):
     print(f"ω = {omega}, additive: the costs of all {len(ours)} pairs agree to 1e-9 m: {largest < 1e-9}")
     assert largest < 1e-9
 
-# %%
-figure, axes = plot.new_figure(6.4, 3.2)
-for (omega, gaps), color, style in zip(gap.items(), (plot.BLUE, plot.ORANGE), ("-", "--"), strict=True):
-    axes.step(range(1, 101), np.sort(gaps)[::-1], where="mid", color=color, linestyle=style, label=f"ω = {omega}")
-axes.set(xlabel="pairs, largest difference first", ylabel="|length there − back| [m]", xlim=(0, 60), ylim=(0, None))
-axes.set_title("REPARE Eq. 13 as printed: same pair, other direction", fontsize=10)
-axes.grid(alpha=0.3)
-axes.legend(title="additive (Eq. 9): 0 everywhere", title_fontsize=8, fontsize=8)
-plot.finished(figure)
+# %% tags=["figure"]
+sorted_gaps = {f"ω = {omega} (additive, Eq. 9: 0 everywhere)": np.sort(gaps)[::-1] for omega, gaps in gap.items()}
+plot.lines(range(1, 101), sorted_gaps, "pairs, largest difference first", "|length there − back| [m]", steps=True,
+           x_range=(0, 60), title="REPARE Eq. 13 as printed: same pair, other direction")  # fmt: skip
 
 # %% [markdown]
 # The pair that differs most, from above. One way stays out of the zone, the other one doesn't:
@@ -554,15 +539,12 @@ assert (np.diff(length, axis=0) > -1e-9).all()
 assert (np.diff(inside, axis=0) < 1e-9).all()
 assert np.ptp(length[rates.index(0.5) :], axis=0).max() < 1e-9  # nothing changes any more
 
-# %%
-figure, axes = plot.new_figure(6.4, 3.6)
-axes.plot(inside.mean(axis=1), length.mean(axis=1), "o-", color=plot.BLUE)
-for row, text in enumerate(["ω = 0", "ω = 0.05", "ω = 0.1", "ω = 0.2", "ω = 0.5 and more"]):
-    axes.annotate(text, (inside[row].mean(), length[row].mean()), (6, 4), textcoords="offset points", fontsize=8)
-axes.set(xlabel="metres in the zone, mean of 100 routes [m]", ylabel="length, mean of 100 routes [m]")
-axes.margins(x=0.12, y=0.12)
-axes.grid(alpha=0.3)
-plot.finished(figure)
+# %% tags=["figure"]
+means = np.column_stack([inside.mean(axis=1), length.mean(axis=1)])
+names = ["ω = 0", "ω = 0.05", "ω = 0.1", "ω = 0.2", "ω = 0.5 and more"]
+plot.lines(means[:, 0], {"A* with a penalty zone": means[:, 1]}, "metres in the zone, mean of 100 routes [m]",
+           "length, mean of 100 routes [m]", points={"one ω": means}, notes=dict(zip(names, means, strict=False)),
+           colors={"one ω": plot.BLUE})  # fmt: skip
 
 # %% [markdown]
 # The first metres are cheap: most of the time in the zone goes at almost no extra length. And there is an end to it.
@@ -619,17 +601,12 @@ print(f"price diagonally beside a pole: ball {beside['ball']:.0f}, ring {beside[
 assert beside == {"ball": 2, "ring": 1}
 assert (round(missed, 3), round(added, 3)) == (0.008, 0.047)
 
-# %%
-figure, axes = plot.new_figure(6.4, 4.2)
-kind = np.select([city.occupied, zones["ball"] & zones["ring"], zones["ring"], zones["ball"]], [4, 1, 2, 3], 0)
-shades = ListedColormap(["white", "0.8", plot.YELLOW, plot.BLUE, "black"])
-plot.draw_map(axes, city, kind[:, :, 52], shades, vmin=0, vmax=4)
-for value, text in enumerate(("open", "in both zones", "ring only", "ball only", "building")):
-    axes.add_patch(plt.Rectangle((0, 0), 0, 0, facecolor=shades(value), edgecolor="0.5", label=text))
-axes.set(xlim=(4, 62), ylim=(46, 100))
-axes.set_title("Zones of 3.5 m, 52 m above the ground", fontsize=10)
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+# %% tags=["figure"]
+ball, ring = (zones[shape][:, :, 52] for shape in ("ball", "ring"))
+areas = {"in both zones": ball & ring, "ring only": ring & ~ball, "ball only": ball & ~ring}
+areas["building"] = city.occupied[:, :, 52]
+plot.area_map(city, areas, area=(4, 62, 46, 100), title="Zones of 3.5 m, 52 m above the ground",
+              colors={"in both zones": plot.SKY, "ring only": plot.YELLOW, "ball only": plot.ORANGE})  # fmt: skip
 
 # %% [markdown]
 # Around buildings as large as these the two hardly differ. But the ring overlooks a pole that stands *inside* it, and
@@ -645,21 +622,17 @@ plot.finished(figure)
 #
 # with equality in the direction $w$ itself: 12.8 % too long, or 8.2 % if the flight stays level.
 
-# %%
-azimuth, elevation = np.meshgrid(np.radians(np.linspace(0, 90, 181)), np.radians(np.linspace(0, 90, 181)))
+# %% tags=["figure"]
+degrees = np.linspace(0, 90, 181)
+azimuth, elevation = np.meshgrid(np.radians(degrees), np.radians(degrees), indexing="ij")
 direction = np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)
 weights = np.array([math.sqrt(3) - math.sqrt(2), math.sqrt(2) - 1, 1])
 excess = np.tensordot(weights, np.sort(direction, axis=0), 1) - 1
-figure, axes = plot.new_figure(5.6, 4.2)
-image = axes.imshow(100 * excess, origin="lower", extent=(0, 90, 0, 90), cmap="cividis")
-figure.colorbar(image, ax=axes, label="lattice route longer than the straight line [%]")
-axes.set(xlabel="direction in the plan, from east to north [°]", ylabel="climb angle [°]")
-axes.set_xticks(range(0, 91, 15))
-axes.set_yticks(range(0, 91, 15))
 assert math.isclose(np.linalg.norm(weights), 1.1281, abs_tol=5e-5)
 assert math.isclose(excess.max(), 0.128, abs_tol=1e-3)
-assert math.isclose(excess[0].max(), 0.082, abs_tol=1e-3)
-plot.finished(figure)
+assert math.isclose(excess[:, 0].max(), 0.082, abs_tol=1e-3)
+plot.heat_map(degrees, degrees, 100 * excess, "direction in the plan, from east to north [°]", "climb angle [°]",
+              "lattice route longer than the straight line [%]", equal=True)  # fmt: skip
 
 # %% [markdown]
 # `shortcut` repairs that after the search. Number the waypoints of the route $0 \dots N$, and let $c(i, j)$ be the
