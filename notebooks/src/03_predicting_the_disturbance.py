@@ -423,12 +423,12 @@ plot.lines(100 * curve[:, 0], {known: curve[:, 1]}, "class too low: unsafe fligh
            x_range=(0, 32), y_range=(0, 0.9), colors={known: "0.5"})  # fmt: skip
 
 # %% [markdown]
-# Left of the grey line at most 1.5 % of the flights are pushed further than predicted. The quantile of the residuals
+# Left of the dashed line at most 1.5 % of the flights are pushed further than predicted. The quantile of the residuals
 # is there, for half a class more distance. It is less than 5 % because the quantile is rounded up once more, to whole
 # metres. XGBoost's own quantile regression is a little less careful: it asks for the quantile of rows that it has
 # learned by heart, and they scatter less.
 #
-# No model gets left of or below the dashed curve by skill; the choice on it is a matter of policy, and only the
+# No model gets left of or below the grey curve by skill; the choice on it is a matter of policy, and only the
 # quantile lets one make it. (GaussianNB and Ridge are far from it: worse on both counts.)
 #
 # ## Tomorrow's weather

@@ -28,11 +28,9 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import shapely
-from matplotlib.colors import ListedColormap
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 from shapely.affinity import rotate, translate
@@ -359,20 +357,15 @@ assert [round(kept[r], 2) for r in (3, 4, 5, 6)] == [2.55, 3.54, 3.81, 0.5]
 # is meant, and 3.81 m where 5.5 m is meant. From radius 6 on it fails altogether: the spire is 5 m wide, the ring looks
 # through it, and a node beside its wall counts as free of risk.
 
-# %%
-zones = ListedColormap(["white", plot.SKY, plot.YELLOW, plot.ORANGE, "black"])  # Okabe and Ito
-names = ["no penalty", "ring and ball", "ring only (adds)", "ball only (misses)", "building"]
-figure, panels = plt.subplots(1, 2, figsize=(9.4, 5.0), dpi=plot.DPI, layout="constrained", sharey=True)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, share="y", width=9.4, height=5.0)
+colors = {"ring and ball": plot.SKY, "ring only (adds)": plot.YELLOW, "ball only (misses)": plot.ORANGE}
 for axes, r in zip(panels, (3, 6), strict=True):
     ring, ball = ring_zones[r][:, :, 50], (city.clearance < r + 0.5)[:, :, 50]
-    kind = np.select([city.occupied[:, :, 50], ring & ball, ring, ball], [4, 1, 2, 3], 0)
-    plot.draw_map(axes, city, kind, zones, vmin=-0.5, vmax=4.5)
-    axes.set(xlim=(0, 62), ylim=(40, 100), title=f"outer ring of radius {r} m against ball of {r + 0.5} m")
-panels[1].set_ylabel("")
-patches = [plt.Rectangle((0, 0), 1, 1, facecolor=zones(n), edgecolor="0.4", label=name) for n, name in enumerate(names)]
-figure.legend(handles=patches, loc="outside lower center", ncols=5)
-figure.suptitle("Section at 50 m: floating building and spire")
-plot.finished(figure)
+    parts = {"ring and ball": ring & ball, "ring only (adds)": ring & ~ball, "ball only (misses)": ball & ~ring}
+    plot.area_map(city, parts | {"building": city.occupied[:, :, 50]}, area=(0, 62, 40, 100), colors=colors, axes=axes,
+                  title=f"50 m high: outer ring of radius {r} m, ball of {r + 0.5} m")  # fmt: skip
+figure
 
 # %% [markdown]
 # Does it matter how the distance is measured? With the distance between *centres*, the ball of radius $r$ is
@@ -448,18 +441,14 @@ assert [round(100 * excess["touched", c]) for c in (4.0, 2.0, 1.0)] == [53, 26, 
 #
 # The same section at all four resolutions, by centres, true outlines in orange:
 
-# %%
+# %% tags=["figure"]
 outlines = [shapely.convex_hull(shapely.MultiPoint(p[:, :2])) for b in city.buildings for p in b.pieces]
-figure, panels = plt.subplots(2, 2, figsize=(7.6, 7.6), dpi=plot.DPI, layout="constrained", sharex=True, sharey=True)
-for axes, (cell, model) in zip(panels.flat, models.items(), strict=True):
-    plot.draw_map(axes, model, np.where(model.occupied[:, :, int(50 / cell)], 1.0, np.nan), "Greys", vmin=0, vmax=2)
-    for outline in outlines:
-        axes.plot(*outline.exterior.xy, color=plot.ORANGE, linewidth=1.2, label="true walls")
-    axes.set_title(f"voxels of {cell:g} m")
-    axes.label_outer()
-panels[0, 0].legend(*(entries[:1] for entries in axes.get_legend_handles_labels()), loc="lower left", fontsize=8)
-figure.suptitle("Section at 50 m, occupied voxels grey")
-plot.finished(figure)
+rings = [np.vstack([shapely.get_coordinates(outline), [[np.nan, np.nan]]]) for outline in outlines]
+figure, panels = plot.new_panels(2, 2, share="xy", width=7.6, height=7.6)
+for axes, (cell, model) in zip(panels, models.items(), strict=True):
+    plot.area_map(model, {"occupied voxels": model.occupied[:, :, int(50 / cell)]}, paths={"true walls": np.vstack(rings)},
+                  title=f"voxels of {cell:g} m, 50 m high", colors={"occupied voxels": "0.6", "true walls": plot.ORANGE}, axes=axes)  # fmt: skip
+figure
 
 # %% [markdown]
 # ## Alleys that close, walls that vanish
@@ -514,20 +503,18 @@ for cell in (0.5, 1.0, 2.0, 4.0):
 for cell in measured["centres"]:
     expected = [max(0, 1 - WIDTH / cell), max(0, 1 - THICKNESS / cell)], [np.clip(2 - WIDTH / cell, 0, 1), 0]
     assert np.allclose([shares[cell] for shares in measured.values()], expected, atol=0.12)  # 200 throws: 3.4 σ
-figure, panels = plt.subplots(1, 2, figsize=(9.0, 3.6), dpi=plot.DPI, layout="constrained", sharey=True)
+figure, panels = plot.new_panels(1, 2, share="y", width=9.0)
 c = np.linspace(0.4, 4.2, 400)
-by_rule = {"centres": (plot.ORANGE, "o", 1 - WIDTH / c, 1 - THICKNESS / c),
-           "touched": (plot.BLUE, "s", np.minimum(2 - WIDTH / c, 1), 0 * c)}  # fmt: skip
+by_rule = {'"centres"': (1 - WIDTH / c, 1 - THICKNESS / c), '"touched"': (np.minimum(2 - WIDTH / c, 1), 0 * c)}
 for number, (axes, title) in enumerate(zip(panels, ("alley of 1.5 m closed", "wall of 0.8 m lost"), strict=True)):
-    for rule, (color, marker, *curves) in by_rule.items():
-        axes.plot(c, 100 * np.maximum(curves[number], 0), color=color, linewidth=1.2)
-        shares = [100 * share[number] for share in measured[rule].values()]
-        axes.plot(list(measured[rule]), shares, marker, color=color, label=f'"{rule}"')
-    axes.set(title=title, xlabel="edge of a voxel [m]")
-    axes.grid(alpha=0.3)
-panels[0].set_ylabel("share of grids [%]")
-panels[1].legend(title="marks measured, lines Eqs 8, 9")
-plot.finished(figure)
+    curves = {rule: 100 * np.maximum(both[number], 0) for rule, both in by_rule.items()}
+    marks = {
+        f'"{rule}"': [(cell, 100 * share[number]) for cell, share in shares.items()]
+        for rule, shares in measured.items()
+    }
+    plot.lines(c, curves, "edge of a voxel [m]", "share of grids [%]", points=marks, point_label="measured",
+               title=title, axes=axes)  # fmt: skip
+figure
 
 # %% [markdown]
 # At 2 m the centres lose the wall on six grids in ten, and close the alley on three in ten (Eq. 8: a quarter). Touch
@@ -559,16 +546,15 @@ for (rule, cell), route in routes.items():
 assert [route.reached for route in routes.values()] == [False, True, True, False, False, True]
 assert list(through_the_wall.values()) == [False, True, False, False, False, False]
 assert not towns["centres", 2.0].occupied[10, 9:11].any()  # the wall is gone there, too
-figure, panels = plt.subplots(2, 3, figsize=(9.6, 5.4), dpi=plot.DPI, layout="constrained", sharex=True, sharey=True)
-for axes, (key, route) in zip(panels.flat, routes.items(), strict=True):
-    plot.draw_map(axes, towns[key], np.where(towns[key].occupied[:, :, 0], 1.0, np.nan), "Greys", vmin=0, vmax=2)
-    for building in blocks:
-        axes.plot(*shapely.box(*building.bounds[:, :2].ravel()).exterior.xy, color=plot.ORANGE)
-    axes.plot(*route.points[:, :2].T, color=plot.BLUE, linewidth=2.5)
-    axes.set_title(f'"{key[0]}", {key[1]:g} m: ' + (f"{route.length:.1f} m" if route.reached else "no way"))
-    axes.label_outer()
-figure.suptitle("True walls orange, occupied voxels grey, route blue")
-plot.finished(figure)
+boxes = [shapely.get_coordinates(shapely.box(*building.bounds[:, :2].ravel())) for building in blocks]
+walls = np.vstack([np.vstack([box, [[np.nan, np.nan]]]) for box in boxes])
+figure, panels = plot.new_panels(2, 3, share="xy", width=9.6, height=5.8)
+for axes, (key, route) in zip(panels, routes.items(), strict=True):
+    ways = {"true walls": walls} | ({"A*": route.points[:, :2]} if route.reached else {})
+    plot.area_map(towns[key], {"occupied voxels": towns[key].occupied[:, :, 0]}, paths=ways, axes=axes,
+                  title=f"{key[0]}, {key[1]:g} m: " + (f"{route.length:.1f} m" if route.reached else "no way"),
+                  colors={"occupied voxels": "0.6", "true walls": plot.ORANGE})  # fmt: skip
+figure
 
 # %% [markdown]
 # By centres the wall is gone at 2 m and at 1 m. At 2 m the closed alley hides that: there is no way at all. At 1 m

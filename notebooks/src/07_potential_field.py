@@ -25,7 +25,6 @@ from itertools import product
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import ListedColormap
 from scipy import ndimage
 from scipy.optimize import minimize
 
@@ -288,22 +287,17 @@ scene.show(city, {"potential field, lattice": endless}, way_out)
 # %% [markdown]
 # What happens there? Along the way, the sizes of pull, push and their vector sum, and the distance that is left:
 
-# %%
-figure, panels = plt.subplots(2, 2, figsize=(8.6, 5.0), dpi=plot.DPI, layout="constrained", sharex="col")
-for (above, below), (title, route), shown in zip(panels.T, both_fields.items(), (21, 90), strict=True):
+# %% tags=["figure"]
+figure, panels = plot.new_panels(2, 2, width=8.6, height=5.6)
+for above, below, (title, route), shown in zip(panels[:2], panels[2:], both_fields.items(), (21, 90), strict=True):
     pull, push = route.info["attraction"][:shown], route.info["repulsion"][:shown]
-    curves = (("pull", pull, BLUE, "--"), ("push", push, ORANGE, "-"), ("sum", pull + push, BLACK, "-"))
-    for name, force, color, style in curves:
-        above.plot(np.linalg.norm(force, axis=1), color=color, linestyle=style, linewidth=1.2, label=name)
-    below.plot(np.linalg.norm(route.points[:shown] - middle, axis=1), color=BLACK)
-    above.set_title(title, fontsize=10)
-    above.set_ylim(0, None)
-    below.set(xlabel="step", ylabel="distance to the goal [m]")
-    for axes in (above, below):
-        axes.grid(alpha=0.3)
-panels[0, 0].set_ylabel("force, k_tra = 1")
-panels[0, 0].legend(fontsize=8)
-plot.finished(figure)
+    forces = {
+        name: np.linalg.norm(force, axis=1) for name, force in (("pull", pull), ("push", push), ("sum", pull + push))
+    }
+    left = np.linalg.norm(route.points[:shown] - middle, axis=1)
+    plot.lines(range(shown), forces, "step", "force, k_tra = 1", title=title, axes=above)
+    plot.lines(range(shown), {"distance": left}, "step", "distance to the goal [m]", axes=below)
+figure
 
 # %% [markdown]
 # The push appears 5 m from the walls and grows until it balances the pull. From there on, nothing is gained.
@@ -402,17 +396,10 @@ caught = np.mean([fate[i, j] for i, j, _ in starts])
 print(f"{caught:.0%} of {len(starts):,} starts end in a trap")
 assert 0.15 < caught < 0.25
 
-# %%
-figure, axes = plot.new_figure(6.6, 4.8)
-colors = ListedColormap(["#F0E442", BLUE, "black"])
-plot.draw_map(axes, city, fate, colors, vmin=0, vmax=2)
-for value, text in enumerate(("arrives", "is trapped", "building")):
-    axes.add_patch(plt.Rectangle((0, 0), 0, 0, facecolor=colors(value), edgecolor="0.5", label=text))
-axes.plot(*notch[:2], "o", color="white", markeredgecolor="black", markersize=9, label="start of Fig. 12")
-axes.plot(*middle[:2], "^", color="white", markeredgecolor="black", markersize=9, label="goal")
-axes.set_title("Starts 30 m above the ground", fontsize=10)
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+# %% tags=["figure"]
+areas = {name: fate == value for value, name in enumerate(("arrives", "is trapped", "building"))}
+plot.area_map(city, areas, points={"start of Fig. 12": [notch[:2]], "goal": [middle[:2]]}, title="Starts 30 m above the ground",
+              colors={"arrives": plot.YELLOW, "is trapped": plot.BLUE, "start of Fig. 12": plot.BLACK})  # fmt: skip
 
 # %% [markdown]
 # If the goal were a lamp, the traps would lie in the *shadows* of the buildings. From the rim of a shadow the UAV

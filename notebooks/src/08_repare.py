@@ -24,7 +24,6 @@
 import math
 from dataclasses import replace
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
 from scipy.optimize import linprog
@@ -188,22 +187,14 @@ assert np.allclose(along["towards the wall"][0], 1.0)
 assert along["towards the wall"][1][3] < 1.2 < along["away from it"][1][3]
 assert (along["towards the wall"][2] >= along["away from it"][2]).all()
 
-# %%
-figure, panels = plt.subplots(1, 3, figsize=(11.4, 3.8), dpi=plot.DPI, layout="constrained", sharey=True)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 3, share="y", width=11.4)
 titles = "way 1: work of the force (Eq. 3)", "way 2: size of the sum (Eq. 4)", "way 3: reasons add up (Eq. 5)"
-styles = (ORANGE, "o-"), (BLUE, "s--"), (BLACK, "^:")
 for way, (axes, title) in enumerate(zip(panels, titles, strict=True)):
-    for (name, prices), (color, style) in zip(along.items(), styles, strict=True):
-        axes.semilogy(distance, prices[way], style, color=color, drawstyle="steps-mid", label=f"wind {name}")
-    axes.axvline(5.5, color="0.5", linewidth=1)
-    axes.annotate("D_min", (5.6, 300), fontsize=8, color="0.3")
-    axes.set(xlabel="distance to the wall [m]", xlim=(0, 9), ylim=(0.3, 1000))
-    axes.set_yticks([1, 10, 100, 1000], ["1", "10", "100", "1000"])
-    axes.set_title(title, fontsize=10)
-    axes.grid(alpha=0.3)
-panels[0].set_ylabel("price of a metre along the wall")
-panels[0].legend(fontsize=8, loc="upper left")
-plot.finished(figure)
+    winds = {f"wind {name}": prices[way] for name, prices in along.items()}
+    plot.lines(distance, winds, "distance to the wall [m]", "price of a metre along the wall [1]", steps=True, log="y",
+               places={"D_min": 5.5}, x_range=(0, 9), y_range=(0.3, 1000), title=title, axes=axes)  # fmt: skip
+figure
 
 # %% [markdown]
 # *Way 1.* The wall pushes sideways and the UAV flies along: no work. The price along the wall is that of the open, at
@@ -682,20 +673,13 @@ for moment, level, by_basic, by_advanced in zip(clock, gustiness, loose[0], tigh
 for change in (*check.log, *monitor.log):
     print(f"{change.time:6.1f} s  {change.value!s:<9} {change.reason}")
 
-# %%
-figure, axes = plot.new_figure(8.6, 4.0)
-axes.axvspan(60, 110, color="0.9", label="three times as gusty")
-axes.plot(clock, seen, color=BLUE, linewidth=0.8, label="offset observed")
-axes.plot(clock, boundary, color=ORANGE, linewidth=2, label="boundary ξ")
-axes.axhline(3.5, color=BLACK, linestyle="--", linewidth=1, label="room: 4 m less half the body")
-for change in monitor.log:
-    axes.axvline(change.time, color=PINK, linestyle=":", linewidth=2)
-    axes.annotate(f"{change.value} from {change.time:.0f} s", (change.time + 2, 4.4), fontsize=8)
-axes.plot([], [], color=PINK, linestyle=":", linewidth=2, label="monitor switches")
-axes.set(xlabel="time in flight [s]", ylabel="offset and boundary [m]", xlim=(0, 300), ylim=(0, 4.8))
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+# %% tags=["figure"]
 assert [change.value for change in monitor.log] == ["advanced", "basic"]
-plot.finished(figure)
+switches = {f"{change.value}\nfrom {change.time:.0f} s": change.time for change in monitor.log}
+gusts = {"rise": (50, 60), "gusts × 3": (60, 110), "fall": (110, 120)}
+plot.lines(clock, {"offset observed": seen, "boundary ξ": boundary}, "time in flight [s]", "offset and boundary [m]",
+           limits={"room: 4 m less\nhalf the body": 3.5}, places=gusts | switches, x_range=(0, 300),
+           y_range=(0, 4.8))  # fmt: skip
 
 # %% [markdown]
 # The first gusts lift the boundary step by step; at 75 s it no longer fits, and the advanced controller takes over. In
@@ -751,20 +735,17 @@ occupied = np.zeros((16, 3, 3), bool)
 occupied[:2] = True
 wall = City(occupied)
 away = np.linspace(0.5, 12, 400)
-figure, axes = plot.new_figure(8.2, 4.0)
-for (name, case), color, style in zip(cases.items(), (BLUE, BLACK, ORANGE), ("-", "--", "-."), strict=True):
+curves, steps, colors = {}, {}, {}
+for (name, case), color in zip(cases.items(), (plot.BLUE, plot.BLACK, plot.ORANGE), strict=True):
     now = flight_conditions(*case)
     sigma = (now.safe_distance - 0.5) / 3
-    smooth = 3000 / 5 * offsets.crossing_rate(away - 0.5, sigma)
-    axes.semilogy(away, smooth, style, color=color, linewidth=2, label=f"price by hazard, σ = {sigma:.2f} m")
+    hazard, zone = f"price by hazard, σ = {sigma:.2f} m", f"price of REPARE, {name}"
+    curves[hazard] = 3000 / 5 * offsets.crossing_rate(away - 0.5, sigma)
     centre, extra = wall.clearance[2:, 1, 1], repare_price(wall, now)[2:, 1, 1] - 1
-    zone = extra > 0
-    axes.semilogy(centre[zone], extra[zone], "o" + style, color=color, linewidth=0.8, label=f"price of REPARE, {name}")
-axes.set(xlabel="distance to the wall [m]", ylabel="price of a metre, above 1", xlim=(0, 10), ylim=(1e-3, 1e3))
-axes.set_yticks([0.001, 0.01, 0.1, 1, 10, 100, 1000], ["0.001", "0.01", "0.1", "1", "10", "100", "1000"])
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+    steps[zone] = np.column_stack([centre, extra])[extra > 0]
+    colors |= {hazard: color, zone: color}
+plot.lines(away, curves, "distance to the wall [m]", "price of a metre, above 1", points=steps, log="y", colors=colors,
+           x_range=(0, 10), y_range=(1e-3, 1e3))  # fmt: skip
 
 # %% [markdown]
 # (Discs: REPARE, nothing from $D_\text{min}$ on.) At $D_\text{min}$ itself, three standard deviations from the body,

@@ -155,15 +155,13 @@ print(f"{len(likely)} ways, {often.sum() - 1} of them likely enough to be counte
 print(f"stuck: {dead:.2%} by the tree, {seen[-1] / 200_000:.2%} of the library's ants")
 assert test.pvalue > 0.01
 
-# %%
-figure, axes = plot.new_figure(5.6, 4.4)
-axes.loglog([1e-4, 1], [1e-4, 1], color="0.6", linewidth=1, label="equal")
-axes.loglog(chance[:-1], seen[:-1] / 200_000, "o", color=BLUE, label="ways to the goal")
-axes.loglog(chance[-1], seen[-1] / 200_000, "s", color=ORANGE, label="all dead ends together")
-axes.set(xlabel="probability by the tree of all ways", ylabel="share of the library's 200 000 ants", aspect="equal")
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8)
-plot.finished(figure)
+# %% tags=["figure"]
+shares = {"ways to the goal": np.column_stack([chance[:-1], seen[:-1] / 200_000]),
+          "all dead ends together": [(chance[-1], seen[-1] / 200_000)]}  # fmt: skip
+figure = plot.lines([1e-4, 1], {"equal": [1e-4, 1]}, "probability by the tree of all ways",
+                    "share of the library's 200 000 ants", points=shares, log="xy", colors={"equal": "0.6"})  # fmt: skip
+figure.axes[0].set_aspect("equal")
+figure
 
 # %% [markdown]
 # They agree. More than half of the ants get stuck at β = 2: who comes to an edge can't turn back, since that would be
@@ -313,19 +311,21 @@ def odds_along(beta, gamma=0.0):
 # %%
 # NBVAL_CHECK_OUTPUT
 looks = {"β = 80": odds_along(80.0), "β = 12": odds_along(12.0), "β = 12, γ = 2": odds_along(12.0, 2.0)}
-figure, panels = plt.subplots(1, 2, figsize=(10.0, 3.8), dpi=plot.DPI, layout="constrained")
-for (name, along), (color, style) in zip(looks.items(), ((ORANGE, "o-"), (BLUE, "s--"), (GREEN, "^:")), strict=True):
-    for axes, column in zip(panels, (1, 2), strict=True):
-        axes.plot(along[:, 0], along[:, column], style, color=color, label=name)
+for name, along in looks.items():
     first, near = along[0], along[np.argmin(np.abs(along[:, 0] - 5))]
     print(f"{name:<14}: {first[0]:.0f} cells from the goal {first[1]:.2f}, {first[2]:.1f} choices; "
           f"{near[0]:.0f} cells {near[1]:.2f}, {near[2]:.1f} choices")  # fmt: skip
-for axes, text in zip(panels, ("probability of the likeliest step", "effective number of choices $e^H$"), strict=True):
-    axes.set(xlabel="distance to the goal [cells]", ylabel=text, xlim=(28, 0), ylim=(0, None))
-    axes.grid(alpha=0.3)
-panels[1].legend(fontsize=8)
 assert (looks["β = 80"][1:-2, 1] > looks["β = 12"][1:-2, 1]).all()
-plot.finished(figure)
+
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, width=10.0, height=4.2)
+texts = "probability of the likeliest step", "effective number of choices exp H"
+for axes, column, text in zip(panels, (1, 2), texts, strict=True):
+    common = looks["β = 80"][:, 0]
+    odds = {name: np.interp(common, along[::-1, 0], along[::-1, column]) for name, along in looks.items()}
+    plot.lines(common, odds, "distance to the goal [cells]", text, axes=axes)
+    axes.set_xlim(28, 0)
+figure
 
 # %% [markdown]
 # The printed ants choose between two or three steps at first, and in the second half of the way they have no choice:
@@ -351,21 +351,20 @@ plot.finished(figure)
 mine = ant_colony(campus, start, goal, rng=0, budget=1000, record=True)
 theirs = ant_colony(campus, start, goal, rng=0, budget=1000, record=True, as_printed=True)
 shortest = least_risk(campus, start, goal, risk_weight=0.0, length_weight=1.0).length
-figure, panels = plt.subplots(1, 2, figsize=(10.0, 3.8), dpi=plot.DPI, layout="constrained", sharey=True)
-for axes, (name, route) in zip(panels, {"printed": theirs, "ours": mine}.items(), strict=True):
-    tau = route.info["pheromone"][:, campus.flyable]
-    axes.semilogy(tau.max(axis=1), color=ORANGE, label="greatest τ on the map")
-    axes.semilogy(tau.min(axis=1), "--", color=BLUE, label="least τ: where nobody went")
-    axes.axhline(15, color="0.4", linewidth=1, label="τ_max = 15")
-    axes.set(title=name, xlabel="generation of 10 ants", xlim=(0, 100), ylim=(1e-8, 100))
-    axes.grid(alpha=0.3)
+scents = {name: route.info["pheromone"][:, campus.flyable] for name, route in (("printed", theirs), ("ours", mine))}
+for name, tau in scents.items():
     print(f"{name}: after 5 generations {tau[5].max():.1f} and {tau[5].min():.2g}, after 100 {tau[100].max():.1f} and "
           f"{tau[100].min():.2g}; at most {tau[1:].max():.1f} after the first")  # fmt: skip
-panels[0].set_ylabel("pheromone τ")
-panels[0].legend(fontsize=8, loc="lower right")
 assert theirs.info["pheromone"][2:].max() < 10 * 100 / (0.8 * shortest) + 15 * 0.2**2 < 15
 assert np.isclose(theirs.info["pheromone"][100].min(), 15 * 0.2**100)
-plot.finished(figure)
+
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, share="y", width=10.0, height=4.2)
+for axes, (name, tau) in zip(panels, scents.items(), strict=True):
+    ends = {"greatest τ on the map": tau.max(axis=1), "least τ: where nobody went": tau.min(axis=1)}
+    plot.lines(range(len(tau)), ends, "generation of 10 ants", "pheromone τ", limits={"τ_max\n= 15": 15}, log="y",
+               x_range=(0, 100), y_range=(1e-8, 100), title=name, axes=axes)  # fmt: skip
+figure
 
 # %% [markdown]
 # ### So the colony stops at once
@@ -393,22 +392,19 @@ print(f"{len(life)} colonies on {len(maps)} campuses")
 
 # %%
 # NBVAL_CHECK_OUTPUT
-figure, axes = plot.new_figure(7.6, 3.8)
-last = {}
-for name, runs, color, style in (("printed", life[:120], ORANGE, "-"), ("ours", life[120:], BLUE, "--")):
+last, ways, quartiles = {}, {}, {}
+for name, runs in (("printed", life[:120]), ("ours", life[120:])):
     arrive, different, last[name] = (np.array(column) for column in zip(*runs, strict=True))
-    axes.plot(range(1, 51), different.mean(axis=0), style, color=color, linewidth=2, label=name)
-    quarter, three = np.quantile(different, [0.25, 0.75], axis=0)
-    axes.fill_between(range(1, 51), quarter, three, color=color, alpha=0.15, linewidth=0)
+    ways[name], quartiles[name] = different.mean(axis=0), np.quantile(different, [0.25, 0.75], axis=0)
     for what, counts in (("arrive", arrive), ("different ways", different)):
         print(f"{name}, {what} in generations 1, 10, 50:", *(f"{counts[:, n].mean():.1f}" for n in (0, 9, 49)))
     print(f"{name}, last improvement in generation {np.median(last[name]):.0f} (median; 90 % by "
           f"{np.quantile(last[name], 0.9, method='higher'):.0f})")  # fmt: skip
-axes.set(xlabel="generation", ylabel="different ways of 10 ants", xlim=(1, 50), ylim=(0, 10.3))
-axes.grid(alpha=0.3)
-axes.legend(title="mean; band: quartiles", fontsize=8, title_fontsize=8)
 assert np.median(last["printed"]) <= 3 < 40 < np.median(last["ours"])
-plot.finished(figure)
+
+# %% tags=["figure"]
+plot.lines(range(1, 51), ways, "generation", "different ways of 10 ants, mean", bands=quartiles, band_label="quartiles",
+           x_range=(1, 50), y_range=(0, 10.3))  # fmt: skip
 
 # %% [markdown]
 # In the first generation the printed ants walk eight or nine different ways. In the tenth it is two, in the last one:
@@ -458,22 +454,9 @@ for other in ("printed, η = 1/d", "the same, any turn"):
     assert low < 0.5 < high
 assert table.loc["ours", "median"] < 7 < 80 < table.loc["printed", "median"]
 
-# %%
-figure, axes = plot.new_figure(8.2, 4.4)
-for row, gaps in enumerate(comparison.gaps):
-    spread = row + np.linspace(-0.3, 0.3, len(maps))[:, None] + 0 * gaps
-    axes.semilogx(100 * gaps.ravel(), spread.ravel(), ".", color=BLUE, alpha=0.45, markersize=5)
-    axes.semilogx(100 * np.median(gaps), row, "|", color=ORANGE, markersize=22, markeredgewidth=3)
-    axes.annotate(f"{100 * np.median(gaps):.1f} %", (1500, row), va="center", fontsize=9, color=ORANGE)
-axes.plot([], [], ".", color=BLUE, label="a run; each campus a line of its own")
-axes.plot([], [], "|", color=ORANGE, markersize=12, markeredgewidth=3, linestyle="none", label="median")
-axes.set_yticks(range(len(kinds)), comparison.planners)
-axes.set_xticks([0.1, 1, 10, 100, 1000], ["0.1 %", "1 %", "10 %", "100 %", "1000 %"])
-axes.set(xlabel="risk above the exact optimum", xlim=(0.09, 5000))
-axes.invert_yaxis()
-axes.grid(alpha=0.3, axis="x")
-axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.4, -0.13), ncols=2)
-plot.finished(figure)
+# %% tags=["figure"]
+found = {name: 100 * gaps.ravel() for name, gaps in zip(comparison.planners, comparison.gaps, strict=True)}
+plot.runs({"an ant colony": found}, "risk above the exact optimum [%]", log=True, digits=1)
 
 # %% [markdown]
 # Ours come within 6.0 % of the optimum in the median, the printed colony stays at more than twice the least risk, and
@@ -528,18 +511,17 @@ first, all_of_it = (np.median(runs[1, :, 0, 0]) - np.median(runs[1, :, 0, n]) fo
 print(f"ours: the first split gives {first / all_of_it:.0%} of what ten give")
 assert np.median(runs[1, :, 0, 3]) < np.median(runs[1, :, 1, 3])
 
-# %%
-figure, panels = plt.subplots(1, 2, figsize=(9.4, 3.9), dpi=plot.DPI, layout="constrained")
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, share="y", width=9.4, height=4.2)
 for axes, name, run in zip(panels, ("printed", "ours"), runs, strict=True):
-    for column, color, style, label in ((0, ORANGE, "o-", "split"), (1, BLUE, "s--", "as many ants, no split")):
-        low, middle, high = 100 * np.quantile(run[:, column], [0.25, 0.5, 0.75], axis=0)
-        axes.plot(SPLITS, middle, style, color=color, label=label)
-        axes.fill_between(SPLITS, low, high, color=color, alpha=0.15, linewidth=0)
-    axes.set(title=name, xlabel="splits (each with 500 ants more)", ylim=(0, None))
-    axes.grid(alpha=0.3)
-panels[0].set_ylabel("gap to the exact optimum [%]")
-panels[0].legend(title="median; band: quartiles", fontsize=8, title_fontsize=8, loc="lower left")
-plot.finished(figure)
+    quartiles = {
+        label: 100 * np.quantile(run[:, column], [0.25, 0.5, 0.75], axis=0)
+        for column, label in enumerate(("split", "as many ants, no split"))
+    }
+    bands = {label: (low, high) for label, (low, _, high) in quartiles.items()}
+    plot.lines(SPLITS, {label: middle for label, (_, middle, _) in quartiles.items()}, "splits (each with 500 ants more)",
+               "gap to the exact optimum [%], median", bands=bands, band_label="quartiles", title=name, axes=axes)  # fmt: skip
+figure
 
 # %%
 for name, run in zip(("printed", "ours"), runs, strict=True):

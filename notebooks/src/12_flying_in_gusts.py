@@ -22,7 +22,6 @@
 # %%
 from dataclasses import replace
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 from uavlab import plot, scene
@@ -117,25 +116,16 @@ assert gap < 0.1
 assert sigmas["tail wind 4 m/s"][2, 1, 0] > 1.2 * sigmas["tail wind 4 m/s"][2, 0, 0]
 assert sigmas["head wind, heavy load"][-1, 1, 0] > 2 * sigmas["head wind, heavy load"][-1, 0, 0]
 
-# %%
-figure, panels = plt.subplots(1, 2, figsize=(11.0, 4.2), dpi=plot.DPI, layout="constrained")
-for (name, values), (color, style), marker in zip(sigmas.items(), plot.styles(list(sigmas)), "osD^", strict=False):
-    said, flown = values[:, :, 0].T
-    panels[0].loglog(strengths, flown, marker, color=color, label=f"{name}, flown")
-    panels[0].loglog(strengths, said, linestyle=style, color=color, linewidth=1.2)
-    panels[1].loglog(strengths, flown / said, marker=marker, linestyle=style, color=color)
-panels[0].plot([], [], color="0.4", label="Eq. 5")
-panels[0].set_yticks([0.01, 0.1, 1, 10], ["0.01", "0.1", "1", "10"])
-panels[1].axhspan(0.9, 1.1, color="0.88", label="within 10 %")
-panels[1].set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
-panels[1].set_yticks([], minor=True)
-for axes, label in zip(panels, ("σ of the offset along the stream [m]", "flown / Eq. 5"), strict=True):
-    axes.set(xlabel="σ of the gusts [m/s]", ylabel=label)
-    axes.set_xticks([0.25, 0.5, 1, 2, 4, 8], ["0.25", "0.5", "1", "2", "4", "8"])
-    axes.set_xticks([], minor=True)
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8, loc="upper left")
-plot.finished(figure)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, width=11.0, height=4.8)
+said = {name: values[:, 0, 0] for name, values in sigmas.items()}
+flown_too = {name: np.column_stack([strengths, values[:, 1, 0]]) for name, values in sigmas.items()}
+plot.lines(strengths, said, "σ of the gusts [m/s]", "σ of the offset along the stream, Eq. 5 [m]", points=flown_too,
+           point_label="flown", log="xy", axes=panels[0])  # fmt: skip
+over = {name: values[:, 1, 0] / values[:, 0, 0] for name, values in sigmas.items()}
+plot.lines(strengths, over, "σ of the gusts [m/s]", "flown / Eq. 5", limits={"within\n10 %": (0.9, 1.1)}, log="xy",
+           axes=panels[1])  # fmt: skip
+figure
 
 # %% [markdown]
 # They agree within 10 % as long as gusts are small beside the stream of air, up to about a fifth of it. They part in
@@ -481,18 +471,14 @@ for name, log in logs.items():
 for vehicle in (LIGHT_QUADROTOR, heavy):
     print(f"load {vehicle.payload:g} kg: hovers with {vehicle.hover_power():.0f} W, {vehicle.endurance / 60:.0f} min")
 
-# %%
-figure, axes = plot.new_figure(7.2, 4.0)
+# %% tags=["figure"]
 speeds = np.linspace(0.0, 17.0, 120)
 level = power_needed(uav, np.column_stack([speeds, 0 * speeds, 0 * speeds]))
-colors = (BLUE, YELLOW, GREEN)
-axes.stackplot(speeds, level.induced, level.profile, level.useful, colors=colors, alpha=0.8,
-               labels=("induced", "profile", "drag of the body"))  # fmt: skip
-axes.plot(speeds, level.battery, color=BLACK, linewidth=2, label="from the battery")
-axes.set(xlabel="speed through the air, level [m/s]", ylabel="power [W]", xlim=(0, 17), ylim=(0, None))
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8, loc="upper left")
-plot.finished(figure)
+tops = np.cumsum([0 * speeds, level.induced, level.profile, level.useful], axis=0)
+parts = {name: (tops[n], tops[n + 1]) for n, name in enumerate(("induced", "profile", "drag of the body"))}
+plot.lines(speeds, {"from the battery": level.battery}, "speed through the air, level [m/s]", "power [W]", bands=parts,
+           x_range=(0, 17), colors={"from the battery": plot.BLACK, "induced": plot.BLUE, "profile": plot.YELLOW,
+                                    "drag of the body": plot.GREEN})  # fmt: skip
 
 # %% [markdown]
 # To fly slowly takes less power than to hover, to fly fast takes much more: a UAV has a speed of least power.

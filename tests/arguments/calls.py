@@ -581,10 +581,10 @@ CALLS = {
         "title": "counts", "axes": panel(),
     },
     "plot.new_panels": lambda: {"rows": 1, "columns": 2, "width": 4.0, "height": 3.0, "share": "y"},
-    "plot.plan": drawn,
+    "plot.plan": lambda: drawn(**colored()),
     "plot.points": lambda: {"groups": {"a": [[1.0, 2.0], [3.0, 4.0]]}, **framed()},
-    "plot.profile": lambda: drawn(safe_distance=0.5),
-    "plot.risk": lambda: {"risk_map": RISK, "height": 2.5, "routes": (LINE,)},
+    "plot.profile": lambda: drawn(safe_distance=0.5, **colored()),
+    "plot.risk": lambda: {"risk_map": RISK, "height": 2.5, "routes": (LINE,), **colored()},
     "plot.risk_norm": lambda: {"risk_map": RISK},
     "plot.styles": lambda: {"names": ["A*", "mine"], "colors": {"mine": "#009E73"}},
     "plot.runs": lambda: {
@@ -603,6 +603,7 @@ CALLS = {
     },
     "plot.tracks": lambda: {
         "city": TOWN, "flights": {"a": [FLIGHT]}, "routes": {"a": LINE}, "area": (0.0, 12.0, 0.0, 12.0),
+        "wind": CALM, **colored(),
     },
     "plot.value_map": lambda: {
         "city": TOWN, "values": np.arange(float(TOWN.occupied[:, :, 0].size)).reshape(TOWN.shape[:2]),
