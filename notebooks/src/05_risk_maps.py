@@ -109,20 +109,13 @@ COLORS = {
     "shortest, tie-break": BLACK, "shortest, least risky": BLUE, "shortest, riskiest": ORANGE, "drift-aware": GREEN,
     "aware, at most +7.4 %": GREEN, "J0: length and threat": PINK, "drift-blind": ORANGE, "Pareto front": plot.SKY,
 }  # fmt: skip
-STYLES = (ORANGE, "-"), (BLUE, "--"), (BLACK, "-."), (PINK, ":"), (GREEN, (0, (5, 1, 1, 1, 1, 1)))
-figure, axes = plot.new_figure(7.2, 3.8)
 curves = {
     "no air: √(2gh)": np.sqrt(2 * 9.81 * heights),
     "drag on the fall alone (Eq. 2)": risk.fall_speed(heights),
     "drag on the whole velocity (Eq. 4)": risk.ballistic_fall(heights).fall_speed,
     "as printed (RISK-ACO Eq. 7, PSO-BAS Eq. 5)": risk.fall_speed(heights, as_printed=True),
 }
-for (name, speed), (color, style) in zip(curves.items(), (STYLES[2], STYLES[1], STYLES[3], STYLES[0]), strict=True):
-    axes.plot(heights, speed, color=color, linestyle=style, linewidth=2, label=name)
-axes.set(xlabel="height fallen [m]", ylabel="vertical speed on impact [m/s]", xlim=(0, 80), ylim=(0, None))
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8)
-plot.finished(figure)
+plot.lines(heights, curves, "height fallen [m]", "vertical speed on impact [m/s]", x_range=(0, 80))
 
 # %% [markdown]
 # The drag on the fall is a small matter here, the misprint isn't. It is a small matter because the papers' wreck is
@@ -226,21 +219,13 @@ assert [risk.impact_fatality(energy, 0.0) for energy in (33.9, 34.1)] == [0, 1]
 assert risk.impact_fatality(34.0, 0.0) == pytest.approx(1 / (1 + root))
 assert risk.impact_energy(mass, uav.cruise_speed, 0.0) == pytest.approx(176.6, abs=0.1)
 
-# %%
+# %% tags=["figure"]
 energy = np.geomspace(10, 1e7, 601)
-figure, axes = plot.new_figure(8.2, 4.0)
-for (name, shelter), (color, style) in zip(risk.SHELTER.items(), STYLES, strict=True):
-    chance = np.maximum(risk.impact_fatality(energy, shelter), 1e-9)
-    axes.loglog(energy, chance, color=color, linestyle=style, linewidth=2, label=f"{shelter:g} {name}")
-for value, text in ((34, "β = 34 J"), (energies["Eq. 2"], "our wreck,\n30 m"), (1e6, "α = 1 MJ")):
-    axes.axvline(value, color="0.5", linewidth=1)
-    axes.annotate(text, (value * 1.12, 2.2e-4), fontsize=8, color="0.3")
-axes.plot(1e6, 0.5, "o", color=BLACK)
-axes.annotate("one in two", (1e6, 0.5), (8, -12), textcoords="offset points", fontsize=8)
-axes.set(xlabel="energy of the impact E [J]", ylabel="chance to die when hit P(f)", ylim=(1e-4, 2), xlim=(10, 1e7))
-axes.grid(alpha=0.3)
-axes.legend(title="shelter $p_s$", fontsize=8, title_fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+chances = {f"shelter {s:g}: {name}": risk.impact_fatality(energy, s) for name, s in risk.SHELTER.items()}
+marks = {"β = 34 J": 34, "our wreck,\n30 m": energies["Eq. 2"], "α = 1 MJ": 1e6}
+plot.lines(energy, chances, "energy of the impact E [J]", "chance to die when hit P(f)", places=marks, log="xy",
+           points={"one in two": [(1e6, 0.5)]}, x_range=(10, 1e7), y_range=(1e-4, 2),
+           colors={"one in two": BLACK})  # fmt: skip
 
 # %% [markdown]
 # At the energy of our wreck the curves lie far apart: sparse trees take away nine tenths of the chance, a high
@@ -299,16 +284,11 @@ assert rates["none"] < risk.vehicle_rate(risk.vehicle_share(10.0)) == pytest.app
 # down at a flatter angle and hits more people. What decides is who is below, and what they stand under. Not the
 # height either:
 
-# %%
+# %% tags=["figure"]
 levels = np.linspace(5.0, 80.0, 151)
-figure, axes = plot.new_figure(7.2, 3.8)
-for (name, shelter), (color, style) in zip(risk.SHELTER.items(), STYLES, strict=True):
-    curve = risk.person_rate(levels, shelter=shelter)
-    axes.semilogy(levels, curve, color=color, linestyle=style, linewidth=2, label=f"{shelter:g} {name}")
-axes.set(xlabel="height above the ground [m]", ylabel="r [deaths per hour of flight]", xlim=(5, 80), ylim=(1e-8, 2e-5))
-axes.grid(alpha=0.3)
-axes.legend(title="shelter $p_s$", fontsize=8, title_fontsize=8, ncols=2, loc="upper right")
-plot.finished(figure)
+by_shelter = {f"shelter {s:g}: {name}": risk.person_rate(levels, shelter=s) for name, s in risk.SHELTER.items()}
+plot.lines(levels, by_shelter, "height above the ground [m]", "r [deaths per hour of flight]", log="y", x_range=(5, 80),
+           y_range=(1e-8, 2e-5))  # fmt: skip
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -626,21 +606,15 @@ for (paper, claim), column in zip(CLAIMED.items(), cuts.swapaxes(0, 1), strict=T
               f"{np.quantile(cut, 0.25):.0%} to {np.quantile(cut, 0.75):.0%}, reached on {reached[paper, reading]} "
               f"of 40 ({share.low:.0%} to {share.high:.0%})")  # fmt: skip
 
-# %%
-figure, panels = plt.subplots(1, 2, figsize=(9.4, 4.0), dpi=plot.DPI, layout="constrained", sharey=True)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, share="y", width=9.4, height=4.4)
+least_cut = np.linspace(0, 100, 401)
 for axes, (paper, claim), column in zip(panels, CLAIMED.items(), cuts.swapaxes(0, 1), strict=True):
-    for reading, cut, (color, style) in zip(READINGS, column.T, STYLES, strict=False):
-        ordered = np.concatenate([[0], np.sort(cut), [1]])
-        share = np.concatenate([[1], np.arange(40, 0, -1) / 40, [0]])
-        axes.step(100 * ordered, 100 * share, where="pre", color=color, linestyle=style, label=reading)
-    axes.axvline(100 * claim, color="0.4", linewidth=1)
-    axes.annotate(f"{paper}: −{claim:.0%}", (100 * claim - 1.5, 3), ha="right", fontsize=8, color="0.3")
-    axes.set(xlabel="cut of the risk [%]", xlim=(0, 100), ylim=(0, 102))
-    axes.set_title(f"at most {ALLOWED[paper] - 1:+.1%} of length", fontsize=10)
-    axes.grid(alpha=0.3)
-panels[0].set_ylabel("share of 40 campuses that reach it [%]")
-panels[0].legend(title="the blind route:", fontsize=8, title_fontsize=8, loc="lower left")
-plot.finished(figure)
+    reached = 100 * (100 * column[..., None] >= least_cut).mean(axis=0)
+    plot.lines(least_cut, dict(zip(READINGS, reached, strict=False)), "cut of the risk [%]",
+               "share of 40 campuses that reach it [%]", places={f"{paper}:\n−{claim:.0%}": 100 * claim}, axes=axes,
+               y_range=(0, 102), title=f"at most {ALLOWED[paper] - 1:+.1%} of length", colors=COLORS)  # fmt: skip
+figure
 
 # %% [markdown]
 # (In brackets the 95 % intervals: of the median by bootstrap over the campuses, of the share by Clopper and Pearson.)
@@ -686,17 +660,17 @@ ahead = risk.ballistic_fall(np.array([22.0, 32.0])).drift
 assert ahead[0] == pytest.approx(33, abs=0.5)
 assert ahead[1] == pytest.approx(39.4, abs=0.5)
 
-# %%
-figure, axes = plot.new_figure(7.6, 4.2)
-for top, (color, style) in zip((60.0, 45.0, 32.0, 22.0, 10.0), STYLES, strict=True):
+# %% tags=["figure"]
+paths = {}
+for top in (60.0, 45.0, 32.0, 22.0, 10.0):
     lost = np.linspace(0, top, 200)
-    axes.plot(risk.ballistic_fall(lost).drift, top - lost, color=color, linestyle=style, label=f"fails at {top:g} m")
-axes.plot([0, 0], [0, 60], color="0.5", linewidth=1, label="where the papers let it fall")
-axes.set_xticks(np.arange(0, 61, 5), minor=True)
-axes.grid(alpha=0.3, which="both", axis="x")
-axes.set(xlabel="ahead of the failure [m], a line every 5 m", ylabel="height [m]", ylim=(0, 64), aspect="equal")
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+    paths[f"fails at {top:g} m"] = np.column_stack([risk.ballistic_fall(lost).drift, top - lost])
+paths["where the papers let it fall"] = [(0, 0), (0, 60)]
+figure = plot.diagram("ahead of the failure [m], a line every 5 m", "height [m]", paths=paths, y_range=(0, 64),
+                      colors={"where the papers let it fall": "0.5"})  # fmt: skip
+figure.axes[0].set_xticks(np.arange(0, 61, 5), minor=True)
+figure.axes[0].grid(alpha=0.3, which="both", axis="x")
+figure
 
 # %% [markdown]
 # Seven cells ahead, in the direction of flight. The rate then belongs to a place *and* a heading $\mathbf u$, and the

@@ -512,7 +512,7 @@ print(f"ours: the first split gives {first / all_of_it:.0%} of what ten give")
 assert np.median(runs[1, :, 0, 3]) < np.median(runs[1, :, 1, 3])
 
 # %% tags=["figure"]
-figure, panels = plot.new_panels(1, 2, share="y", width=9.4, height=4.2)
+figure, panels = plot.new_panels(1, 2, width=9.4, height=4.2)
 for axes, name, run in zip(panels, ("printed", "ours"), runs, strict=True):
     quartiles = {
         label: 100 * np.quantile(run[:, column], [0.25, 0.5, 0.75], axis=0)
