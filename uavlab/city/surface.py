@@ -1,7 +1,8 @@
 """The surface of a union of convex pieces, as it is drawn: without walls between pieces, edges only where it bends.
 
 Pieces that were cut from one footprint, or that stand for the faces of a surface, share whole facets. What two pieces
-share lies inside. Pieces that only overlap keep their facets: what is inside is hidden by what is outside.
+share from opposite sides lies inside. Pieces that only overlap keep their facets: what is inside is hidden by what is
+outside.
 """
 
 from __future__ import annotations
@@ -32,18 +33,23 @@ def outer_surface(hulls: Sequence[Hull]) -> tuple[np.ndarray, np.ndarray]:
     places = np.round(corners.reshape(-1, 3) / STEP).astype(np.int64)
     point = numbered(places).reshape(-1, 3)
     facet = numbered(np.column_stack([piece, np.round(planes / STEP).astype(np.int64)]))
-    kept = ~is_shared(facet, point)
+    kept = ~is_between(facet, point, normals)
     return corners[kept], bends(corners[kept], point[kept], normals[kept])
 
 
-def is_shared(facet: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Whether the facet of each triangle (T,) has the same corners, points (T, 3), as another facet."""
+def is_between(facet: np.ndarray, point: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Whether the facet of each triangle (T,) has the same corners, points (T, 3), as one that faces it.
+
+    Facets that face the same way, as of two pieces that are the same, are a surface all the same.
+    """
     pairs = np.unique(np.column_stack([np.repeat(facet, 3), point.ravel()]), axis=0)
     marks = np.random.default_rng(0).integers(0, 2**62, point.max() + 1)  # equal sums: equal corners, all but surely
     sums = np.zeros(facet.max() + 1, dtype=np.int64)
     np.add.at(sums, pairs[:, 0], marks[pairs[:, 1]])
-    _, same, count = np.unique(sums, return_inverse=True, return_counts=True)
-    return (count > 1)[same][facet]
+    _, first, same = np.unique(sums[facet], return_index=True, return_inverse=True)
+    faced = np.zeros(len(first), dtype=bool)
+    np.logical_or.at(faced, same, np.einsum("ij,ij->i", normals, normals[first][same]) < 0)
+    return faced[same]
 
 
 def bends(corners: np.ndarray, point: np.ndarray, normals: np.ndarray) -> np.ndarray:

@@ -56,17 +56,27 @@ def fitted(corners: np.ndarray, azimuth_deg: float, elevation_deg: float, aspect
 
     With a, b, w the coordinates to the right, up and towards the eye, and t the tangent of half of the field of view,
     a point is in the frame of an eye at (x, D) if |a − x| ≤ (D − w) t; so D = (max(a + w t) + max(−a + w t)) / 2t.
+    Then x is where the picture is in the middle.
     """
     axes = axes_of(azimuth_deg, elevation_deg)
     upright = np.tan(np.radians(FIELD_OF_VIEW_DEG) / 2) / MARGIN
     *sideways, toward = axes @ corners.T
-    place, distance = np.zeros(2), 0.0
-    for number, (across, tangent) in enumerate(zip(sideways, (aspect * upright, upright), strict=True)):
+    distance = 0.0
+    for across, tangent in zip(sideways, (aspect * upright, upright), strict=True):
         high, low = (across + tangent * toward).max(), (-across + tangent * toward).max()
-        place[number] = (high - low) / 2
         distance = max(distance, (high + low) / (2 * tangent))
-    target = place @ axes[:2]
+    target = np.array([middle_of(across, distance - toward) for across in sideways]) @ axes[:2]
     return View(target + distance * axes[2], target, axes[1])
+
+
+def middle_of(across: np.ndarray, depth: np.ndarray) -> float:
+    """From where points (N,) at depths (N,) [m] reach equally far to both sides in the picture, by bisection."""
+    low, high = float(across.min()), float(across.max())
+    for _ in range(40):
+        middle = (low + high) / 2
+        seen = (across - middle) / depth
+        low, high = (middle, high) if seen.max() > -seen.min() else (low, middle)
+    return (low + high) / 2
 
 
 def chasing(place: np.ndarray, heading: np.ndarray, size: float) -> View:

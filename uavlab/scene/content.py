@@ -34,7 +34,8 @@ NEAR_WIDTH = 0.1
 """Of a route's tube as it is seen from near [m]: a UAV isn't hidden in it."""
 CLOSEUP = 100.0
 """A view is near when the eye's distance is less than so many widths of a tube."""
-MOST_SECONDS = 1e6
+MOST_METRES = 1e6
+"""Farther from the centre of the map, coordinates are those of another map."""
 
 
 def drawing_of(
@@ -105,7 +106,7 @@ def looks_of(routes: Sequence[Route], flights: Mapping[str, Flight], colors: Map
     planners = [route.planner for route in routes]
     others = [name for name in flights if name not in planners]
     looks = styles(planners + others, colors)
-    by_name = dict(zip(planners + others, looks, strict=True))
+    by_name = dict(zip(reversed(planners + others), reversed(looks), strict=True))  # the first of a name
     return looks[: len(planners)] + [by_name[name] for name in flights]
 
 
@@ -124,6 +125,12 @@ def width_of(drawing: Drawing) -> float:
 
 def way(drawing: Drawing, name: str, points: np.ndarray, style: Style, *, thickness: float = 1.0) -> None:
     """A polyline as a tube in a line style, from near as thin as the arms of a UAV; and room for it in the frame."""
+    reach = np.abs(drawing.near(points)).max()
+    if reach > MOST_METRES:
+        raise ValueError(
+            f"routes and flights must lie within {MOST_METRES / 1000:,.0f} km of the map's centre, in its coordinates, "
+            f"got one {reach / 1000:,.4g} km away"
+        )
     width = thickness * width_of(drawing)
     thin = min(NEAR_WIDTH, width)
     for part, across, known in ((name, width, drawing.far_only), (f"{name} near", thin, drawing.near_only)):
@@ -146,7 +153,14 @@ def draw_routes(drawing: Drawing, routes: Sequence[Route], looks: Sequence[Style
             drawing.markers.append(Marker("goal" if route.reached else "stopped", route.points[-1], style.color))
         missed = route.info.get("goal")
         if not route.reached and missed is not None:
-            drawing.markers.append(Marker("missed", np.asarray(missed, dtype=float), style.color))
+            draw_missed(drawing, missed, style)
+
+
+def draw_missed(drawing: Drawing, goal: np.ndarray, style: Style) -> None:
+    """A sign where a UAV should have arrived, and room for it in the frame."""
+    goal = np.asarray(goal, dtype=float)
+    drawing.markers.append(Marker("missed", goal, style.color))
+    show_too(drawing, goal)
 
 
 def fly_routes(drawing: Drawing, routes: Sequence[Route], looks: Sequence[Style], **fly: Any) -> None:
@@ -155,7 +169,7 @@ def fly_routes(drawing: Drawing, routes: Sequence[Route], looks: Sequence[Style]
         if route.length > 0:
             time, points = along_route(route, fly["uav"])
             drawing.movers.append(mover(time, points, style, **fly))
-            drawing.duration = max(drawing.duration, min(float(time[-1]), MOST_SECONDS))
+            drawing.duration = max(drawing.duration, float(time[-1]))
 
 
 def draw_flights(drawing: Drawing, named: Mapping[str, Flight], looks: Sequence[Style], **fly: Any) -> None:
@@ -170,7 +184,7 @@ def draw_flights(drawing: Drawing, named: Mapping[str, Flight], looks: Sequence[
     else:
         for (name, flight), style in zip(named.items(), looks, strict=True):
             drawing.legend.append(Entry("line", label_of_flight(name, flight), style.color, style))
-    flown = [(flight, style) for flight, style in zip(named.values(), looks, strict=True) if len(flight.log) > 1]
+    flown = [(flight, style) for flight, style in zip(named.values(), looks, strict=True) if len(flight.log)]
     shown = flown[:: -(-len(flown) // MOST_FLIGHTS)] if flown else []
     if len(shown) < len(flown):
         drawing.notes.append(f"{len(shown)} of {len(flown)} flights are drawn")
@@ -187,7 +201,7 @@ def draw_flights(drawing: Drawing, named: Mapping[str, Flight], looks: Sequence[
             since = 0.0 if arrived else float(time[-1])
             drawing.markers.append(Marker("goal" if arrived else "stopped", points[-1], style.color, since))
         if flight.outcome != "arrived" and flight.goal is not None:
-            drawing.markers.append(Marker("missed", flight.goal, style.color))
+            draw_missed(drawing, flight.goal, style)
 
 
 def draw_expansion(drawing: Drawing, city: City, order: np.ndarray) -> None:

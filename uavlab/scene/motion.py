@@ -54,11 +54,14 @@ def turned(time: np.ndarray, points: np.ndarray, uav: UAV, wind: Wind) -> np.nda
     force = acceleration + [0.0, 0.0, GRAVITY] + drag * np.linalg.norm(air, axis=1, keepdims=True) * air
     force[:, 2] = np.maximum(force[:, 2], 0.2 * GRAVITY)
     upward = np.column_stack([np.interp(time, even, axis) for axis in force.T])
-    nose = np.column_stack([np.interp(time, even, axis) for axis in headings(velocity).T])
+    nose = headings(velocity)[np.round((time - time[0]) / step).astype(int)]
     axis = upward / np.linalg.norm(upward, axis=1, keepdims=True)
     left = np.cross(axis, np.column_stack([nose, np.zeros(len(nose))]))
     left /= np.linalg.norm(left, axis=1, keepdims=True)
-    return Rotation.from_matrix(np.stack([np.cross(left, axis), left, axis], axis=-1)).as_quat()
+    turn = Rotation.from_matrix(np.stack([np.cross(left, axis), left, axis], axis=-1)).as_quat()
+    back = np.einsum("ij,ij->i", turn[1:], turn[:-1]) < 0  # q and -q are one turn, but what lies between them isn't
+    turn[1:] *= np.where(np.cumsum(back) % 2, -1.0, 1.0)[:, None]
+    return turn
 
 
 def headings(velocity: np.ndarray) -> np.ndarray:

@@ -13,11 +13,11 @@ from uavlab.flight import Flight
 from uavlab.plot.pictures import png_of
 from uavlab.plot.style import DPI, Drawn
 from uavlab.risk import RiskMap
-from uavlab.scene.camera import Camera, checked_camera
+from uavlab.scene.camera import Camera
 from uavlab.scene.content import drawing_of
 from uavlab.scene.legend import words_of
 from uavlab.scene.recorder import motion_of, page_of
-from uavlab.scene.stills import chase_size, checked_moment, picture_of
+from uavlab.scene.stills import chase_size, checked_moment, checked_view, picture_of
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
 from uavlab.weather import Wind
 
@@ -230,10 +230,8 @@ def made(
 ) -> tuple[str, bytes, str]:
     """The page, its still, and what it shows in words; `asked` are arguments of `drawing_of`."""
     drawing = drawing_of(city, routes, **asked)
-    camera, start_at = checked_camera(camera), checked_moment(drawing, start_at)
+    camera, start_at = checked_view(drawing, camera), checked_moment(drawing, start_at)
     start_paused = checks.flag("start_paused", start_paused)
-    if camera == "chase" and not drawing.movers:
-        raise ValueError("camera='chase' follows a UAV: give a route or a flight")
     size, words = chase_size(asked["uav"], asked["safe_distance"]), words_of(drawing)
     picture = png_of(picture_of(drawing, camera, start_at if start_paused else drawing.duration, size), DPI)
     return page_of(drawing, motion_of(drawing, camera, start_paused, start_at, size), picture, words), picture, words

@@ -61,8 +61,8 @@ class Frame:
         for surface in solid:
             self.fill(surface, center)
         for part in parts.values():
-            if isinstance(part, Lines) and len(part.ends):
-                ends = self.projected(part.ends - center).reshape(-1, 2, 3)
+            if isinstance(part, Lines):
+                ends = self.projected(self.shortened((part.ends - center).reshape(-1, 2, 3)))
                 stroke(self.pixels, self.near, ends, np.array(to_rgb(part.color)), FINER)
             elif isinstance(part, Dots):
                 places = self.projected(part.points - center)
@@ -84,7 +84,7 @@ class Frame:
 
     def cut(self, triangles: np.ndarray, colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Triangles (T, 3, 3) and their colours (T, 3), those that reach behind the eye cut off in front of it."""
-        depth = -((triangles - self.view.eye) @ self.axes[2]) - 1.01 * NEAREST * self.distance
+        depth = self.ahead(triangles)
         ahead = depth > 0
         kept, tones = [triangles[ahead.all(axis=1)]], [colors[ahead.all(axis=1)]]
         for number in np.flatnonzero(ahead.any(axis=1) & ~ahead.all(axis=1)):
@@ -99,6 +99,21 @@ class Frame:
             kept += [np.array([[polygon[0], polygon[n], polygon[n + 1]]]) for n in range(1, len(polygon) - 1)]
             tones += [colors[number : number + 1]] * (len(polygon) - 2)
         return np.concatenate(kept), np.concatenate(tones)
+
+    def shortened(self, ends: np.ndarray) -> np.ndarray:
+        """Lines (L, 2 ends, 3), those that reach behind the eye cut off in front of it."""
+        depth = self.ahead(ends)
+        crosses = (depth > 0).any(axis=1) & (depth <= 0).any(axis=1)
+        cut = ends.copy()
+        for end, other in ((0, 1), (1, 0)):
+            behind = crosses & (depth[:, end] <= 0)
+            share = depth[behind, other] / (depth[behind, other] - depth[behind, end])
+            cut[behind, end] = ends[behind, other] + share[:, None] * (ends[behind, end] - ends[behind, other])
+        return cut
+
+    def ahead(self, points: np.ndarray) -> np.ndarray:
+        """How far points (..., 3) lie before the plane in front of the eye where things are cut off [m]."""
+        return -((points - self.view.eye) @ self.axes[2]) - 1.01 * NEAREST * self.distance
 
     def picture(self) -> np.ndarray:
         """(height, width, 3) from 0 to 1, averaged from the finer one."""
@@ -159,11 +174,18 @@ def stroke(pixels, near, ends, color, width):
         (ax, ay, aw), (bx, by, bw) = ends[number]
         if aw <= 0 or bw <= 0:
             continue
-        steps = int(max(abs(bx - ax), abs(by - ay))) + 1
-        if steps > 20 * (rows + columns):
+        begin, end = 0.0, 1.0  # of it lies in the picture
+        for place, reach, size in ((ax, bx - ax, columns), (ay, by - ay, rows)):
+            if reach != 0:
+                first, last = (-width - place) / reach, (size + width - place) / reach
+                begin, end = max(begin, min(first, last)), min(end, max(first, last))
+            elif place < -width or place > size + width:
+                end = -1.0
+        if begin > end:
             continue
+        steps = int((end - begin) * max(abs(bx - ax), abs(by - ay))) + 1
         for step in range(steps + 1):
-            share = step / steps
+            share = begin + (end - begin) * step / steps
             x, y = ax + share * (bx - ax), ay + share * (by - ay)
             depth = (aw + share * (bw - aw)) * LIFTED
             column, row = int(np.floor(x - width / 2 + 0.5)), int(np.floor(y - width / 2 + 0.5))
@@ -182,8 +204,8 @@ def dot(pixels, near, places, color, size):
         if depth <= 0:
             continue
         half = max(0.5, size * depth / 2)
-        for i in range(max(0, int(y - half)), min(rows, int(y + half) + 1)):
-            for j in range(max(0, int(x - half)), min(columns, int(x + half) + 1)):
+        for i in range(max(0, int(np.ceil(y - half - 0.5))), min(rows, int(np.floor(y + half - 0.5)) + 1)):
+            for j in range(max(0, int(np.ceil(x - half - 0.5))), min(columns, int(np.floor(x + half - 0.5)) + 1)):
                 if depth > near[i, j]:
                     pixels[i, j] = color
                     near[i, j] = depth

@@ -118,7 +118,8 @@ def draw(scene: meshcat.Visualizer, part: Part, center: np.ndarray) -> None:
     if isinstance(part, Dots):
         points = (part.points - center).T.astype(np.float32)
         color = np.array(to_rgb(part.color), dtype=np.float32)[:, None]
-        scene.set_object(g.PointCloud(points, np.tile(color, points.shape[1]), size=part.size))
+        size = part.size / np.tan(np.radians(FIELD_OF_VIEW_DEG) / 2)  # the viewer's sizes are those at 90 degrees
+        scene.set_object(g.PointCloud(points, np.tile(color, points.shape[1]), size=size))
     elif isinstance(part, Lines):
         geometry = Joined((part.ends - center).reshape(-1, 2, 3))
         scene.set_object(g.LineSegments(geometry, g.LineBasicMaterial(color=as_number(part.color))))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.colors import to_rgb
+from matplotlib.colors import is_color_like, to_rgb
 
 from uavlab.city import City
 from uavlab.plot.colors import SEQUENTIAL
@@ -124,6 +124,12 @@ def draw_city(drawing: Drawing, city: City) -> None:
 
 def colors_of(city: City, counts: list[int]) -> np.ndarray:
     """The buildings' colours, one for each of their triangles."""
+    for building in city.buildings:
+        if not is_color_like(building.color):
+            raise ValueError(
+                f"color of {building.name!r:.60} must be a colour of matplotlib, such as 'steelblue', "
+                f"got {building.color!r:.40}"
+            )
     return np.repeat([to_rgb(building.color) for building in city.buildings], counts, axis=0)
 
 
@@ -247,29 +253,46 @@ def layer_triangles(city: City, height: npt.ArrayLike) -> np.ndarray:
 
 def draw_wind(drawing: Drawing, city: City, wind: Wind) -> None:
     """A wind sock where nothing is built, and arrows where the mean wind comes onto the map."""
-    (west, south, _), (east, north, _) = city.bounds
-    size = 0.07 * float(np.hypot(east - west, north - south))
+    size = 0.07 * float(np.linalg.norm((city.bounds[1] - city.bounds[0])[:2]))
     drawing.wind = blows = np.array(wind.mean[:2])
-    places = np.array([(west, south), (east, south), (west, north), (east, north)])
-    inside = places + 0.6 * size * np.sign((places.min(axis=0) + places.max(axis=0)) / 2 - places)
-    built = built_columns(city)
-    cells = np.clip(city.cell_of(np.column_stack([inside, np.full(4, city.bounds[0, 2])]))[:, :2], 0,
-                    np.array(city.shape[:2]) - 1)  # fmt: skip
-    corner = int(np.argmin(built[cells[:, 0], cells[:, 1]]))  # the first free one
-    foot = np.array([*inside[corner], city.bounds[0, 2]])
-    foot[2] = ground_below(city, foot)
-    drawing.parts["wind sock"] = Surface(*wind_sock(foot, blows, size))
-    speed = float(np.hypot(*blows))
-    gusts = {"none": "no gusts", "dryden": "Dryden gusts"}.get(wind.gusts, f"gusts of σ = {wind.deviation:g} m/s")
+    sock, colors = wind_sock(place_of_sock(city, 0.6 * size), blows, size)
+    drawing.parts["wind sock"] = Surface(sock, colors)
+    drawing.seen.append(sock.reshape(-1, 3))
+    speed = float(np.linalg.norm(blows))
+    spread = f"gusts of σ = {wind.deviation:g} m/s" if wind.deviation else "no gusts"
+    gusts = {"none": "no gusts", "dryden": "Dryden gusts"}.get(wind.gusts, spread)
     words = f"wind {speed:.3g} m/s, {gusts}" if speed else f"no mean wind, {gusts}"
     drawing.legend.append(Entry("wind", words, WIND_COLOR))
     if speed:
-        along, middle = blows / speed, np.array([(west + east) / 2, (south + north) / 2])
-        reach = min(((east - west) / 2) / max(abs(along[0]), 1e-9), ((north - south) / 2) / max(abs(along[1]), 1e-9))
-        height = drawing.box[:, 2].mean()
-        shafts = []
-        for share in (-0.3, 0.0, 0.3):
-            beside = share * min(east - west, north - south) * np.array([-along[1], along[0]])
-            tail = np.array([*(middle + beside - reach * along), height])
-            shafts.append(arrow(tail, tail + 1.2 * size * np.array([*along, 0.0]), 0.1 * size))
-        drawing.parts["wind"] = Surface(np.concatenate(shafts), WIND_COLOR)
+        height = max(float(drawing.box[:, 2].mean()), float(drawing.box[0, 2]) + size)
+        shafts = wind_arrows(city, blows / speed, size, height)
+        drawing.parts["wind"] = Surface(shafts, WIND_COLOR)
+        drawing.seen.append(shafts.reshape(-1, 3))
+
+
+def place_of_sock(city: City, inward: float) -> np.ndarray:
+    """On the ground (3,) [m]: near the first corner of the map that isn't built on, else the free column nearest to it.
+
+    `inward` is how far from the border a corner's place is [m].
+    """
+    low, high = city.bounds[:, :2]
+    free = ~built_columns(city)
+    centers = np.stack(np.meshgrid(city.coordinates(0), city.coordinates(1), indexing="ij"), axis=-1)
+    places = np.array([np.where(upper, high - inward, low + inward) for upper in ((0, 0), (1, 0), (0, 1), (1, 1))])
+    columns = [np.unravel_index(np.linalg.norm(centers - place, axis=-1).argmin(), free.shape) for place in places]
+    place = next((place for place, column in zip(places, columns, strict=True) if free[column]), None)
+    if place is None:
+        distance = np.where(free, np.linalg.norm(centers - places[0], axis=-1), np.inf)
+        place = centers[np.unravel_index(distance.argmin(), free.shape)]
+    foot = np.array([*place, city.bounds[0, 2]])
+    return np.array([*place, ground_below(city, foot)])
+
+
+def wind_arrows(city: City, along: np.ndarray, size: float, height: float) -> np.ndarray:
+    """Triangles of three arrows along a level direction (2,) that begin where it enters the map, at a height [m]."""
+    low, high = city.bounds[:, :2]
+    reach = ((high - low) / 2 / np.maximum(np.abs(along), 1e-9)).min()
+    tail = (low + high) / 2 - reach * along
+    ahead, beside = np.array([*along, 0.0]), np.array([-along[1], along[0], 0.0]) * (high - low).min()
+    feet = [np.array([*tail, height]) + share * beside for share in (-0.3, 0.0, 0.3)]
+    return np.concatenate([arrow(foot, foot + 1.2 * size * ahead, 0.1 * size) for foot in feet])

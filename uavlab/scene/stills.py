@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
-from textwrap import fill
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -25,7 +25,7 @@ from uavlab.risk import RiskMap
 from uavlab.scene.camera import DIRECTIONS, FIELD_OF_VIEW_DEG, Camera, View, chasing, checked_camera, fitted
 from uavlab.scene.content import MOST_NAMED, drawing_of
 from uavlab.scene.drawing import Drawing, Entry
-from uavlab.scene.raster import Frame
+from uavlab.scene.raster import FINER, Frame
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
 from uavlab.weather import Wind
 
@@ -35,6 +35,8 @@ SIGNS: dict[str, dict[str, Any]] = {
     "start": {"marker": "o"}, "goal": {"marker": "^"}, "stopped": {"marker": "s"},
     "missed": {"marker": "^", "markerfacecolor": "none"}, "crash": {"marker": "x", "markeredgewidth": 3.0},
 }  # fmt: skip
+SHORT, LONGEST = 46, 95
+"""Letters of a legend's line: two columns of short ones fit below the picture; longer ones go on in the next line."""
 SMALLEST = 12
 """A UAV that is drawn with fewer pixels has a ring around it."""
 
@@ -70,7 +72,7 @@ def still(
     Raises
     ------
     ValueError
-        If an argument is wrong as for `page`.
+        If `start_at` lies outside of the animation, or another argument is wrong as for `page`.
 
     See Also
     --------
@@ -91,9 +93,17 @@ def still(
         city, routes, safe_distance=safe_distance, expansion=expansion, risk=risk, slice_height=slice_height,
         flights=flights, wind=wind, uav=uav, colors=colors,
     )  # fmt: skip
-    camera = checked_camera(camera)
+    camera = checked_view(drawing, camera)
     moment = drawing.duration if start_at is None else checked_moment(drawing, start_at)
     return picture_of(drawing, camera, moment, chase_size(uav, safe_distance))
+
+
+def checked_view(drawing: Drawing, camera: Camera) -> Camera:
+    """A camera that has something to follow, if it follows."""
+    camera = checked_camera(camera)
+    if camera == "chase" and not drawing.movers:
+        raise ValueError("camera='chase' follows a UAV: give a route or a flight")
+    return camera
 
 
 def checked_moment(drawing: Drawing, start_at: float) -> float:
@@ -114,12 +124,12 @@ def chase_size(uav: UAV, safe_distance: float | None) -> float:
 
 def view_of(drawing: Drawing, camera: Camera, moment: float, size: float, aspect: float) -> View:
     """From where a drawing is seen at a moment, in coordinates about its centre."""
-    if camera == "chase" and drawing.movers:
+    if camera == "chase":
         place, turn = drawing.movers[0].at(moment)
         x, y, z, w = turn
         nose = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + z * w)])
         return chasing(drawing.near(place), nose, size)
-    direction = DIRECTIONS.get(camera, DIRECTIONS["overview"]) if isinstance(camera, str) else camera
+    direction = DIRECTIONS[camera] if isinstance(camera, str) else camera
     return fitted(drawing.outline(), *direction, aspect)
 
 
@@ -146,14 +156,25 @@ def picture_of(drawing: Drawing, camera: Camera, moment: float, size: float) -> 
         bar.ax.tick_params(labelsize=8)
     handles = [handle_of(entry) for entry in drawing.legend]
     if handles:
-        figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8)
+        figure.legend(handles=handles, loc="outside lower center", ncols=columns_of(drawing), fontsize=8,
+                      handlelength=4.0)  # fmt: skip
     return finished(figure)
 
 
 def legend_height(drawing: Drawing) -> float:
     """Room for the legend and a scale [inches]."""
-    lines = sum(-(-len(entry.text) // 52) for entry in drawing.legend)
-    return 0.3 + 0.19 * -(-lines // 2) + 0.55 * bool(drawing.risk is not None or drawing.order)
+    lines = sum(1 + label_of(entry).count("\n") for entry in drawing.legend)
+    return 0.3 + 0.19 * -(-lines // columns_of(drawing)) + 0.55 * bool(drawing.risk is not None or drawing.order)
+
+
+def columns_of(drawing: Drawing) -> int:
+    """Of the legend: two, if all its lines are short."""
+    return 2 if all(len(entry.text) <= SHORT for entry in drawing.legend) else 1
+
+
+def label_of(entry: Entry) -> str:
+    """The words of a line of the legend, as matplotlib has them."""
+    return plain(textwrap.fill(entry.text, LONGEST))
 
 
 def draw_signs(axes: Axes, frame: Frame, drawing: Drawing, moment: float) -> None:
@@ -171,7 +192,7 @@ def draw_signs(axes: Axes, frame: Frame, drawing: Drawing, moment: float) -> Non
                 axes.plot(*place.T, **look, color=marker.color, markeredgecolor="white")
     for mover in drawing.movers if len(drawing.movers) <= MOST_NAMED else ():
         place = drawing.near(mover.at(moment)[0])
-        pixels = frame.focus * np.ptp(mover.body.triangles[..., 0]) * frame.projected(place)[2] / 2
+        pixels = frame.focus * np.ptp(mover.body.triangles[..., 0]) * frame.projected(place)[2] / FINER
         if 0 < pixels < SMALLEST:
             ring = frame.places(place[None])
             for color, width in (("white", 4.0), (mover.color, 2.0)):
@@ -208,7 +229,7 @@ def draw_compass(axes: Axes, frame: Frame, view: View, drawing: Drawing) -> None
 
 def handle_of(entry: Entry) -> Line2D | Patch:
     """A line of the legend as matplotlib has it."""
-    label = fill(plain(entry.text), 52)
+    label = label_of(entry)
     if entry.kind in SIGNS:
         return Line2D([], [], linestyle="", markersize=8, color=entry.color, label=label, **SIGNS[entry.kind])
     if entry.kind in ("patch", "ball"):

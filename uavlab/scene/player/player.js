@@ -54,14 +54,22 @@ function playScene(commands, arrays, scene) {
     const axes = axesOf(azimuth, Math.min(elevation, 89.9));
     const tangent = Math.tan(camera.fov * RADIANS / 2) / scene.margin;
     let distance = 0;
-    const place = [camera.aspect * tangent, tangent].map((t, axis) => {
+    [camera.aspect * tangent, tangent].forEach((t, axis) => {
       const high = Math.max(...corners.map(c => dot(c, axes[axis]) + t * dot(c, axes[2])));
       const low = Math.max(...corners.map(c => -dot(c, axes[axis]) + t * dot(c, axes[2])));
       distance = Math.max(distance, (high + low) / (2 * t));
-      return (high - low) / 2;
     });
+    const place = [0, 1].map(axis => middleOf(corners.map(c => [dot(c, axes[axis]), distance - dot(c, axes[2])])));
     const target = sum([place[0], axes[0]], [place[1], axes[1]]);
     look(sum([1, target], [distance, axes[2]]), target);
+  }
+  function middleOf(points) {  // across and depth of each: from where they reach equally far to both sides
+    let low = Math.min(...points.map(p => p[0])), high = Math.max(...points.map(p => p[0]));
+    for (let turn = 0; turn < 40; turn++) {
+      const middle = (low + high) / 2, seen = points.map(([across, depth]) => (across - middle) / depth);
+      if (Math.max(...seen) > -Math.min(...seen)) low = middle; else high = middle;
+    }
+    return (low + high) / 2;
   }
   function look(eye, target) {
     camera.position.copy(world(eye));
