@@ -23,7 +23,6 @@
 # %%
 from dataclasses import replace
 
-import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import display
 from scipy.interpolate import BSpline
@@ -70,19 +69,14 @@ weights = segment(np.eye(4), t)
 assert np.allclose(weights.sum(axis=1), 1, atol=1e-15)
 assert (weights > -1e-15).all()
 
-# %%
-figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.8), dpi=plot.DPI, layout="constrained")
-for number, (color, style) in enumerate(plot.styles(["P0", "P1", "P2", "P3"])):
-    left.plot(t, weights[:, number], color=color, linestyle=style, label=f"$P_{number}$")
-left.set(xlabel="t", ylabel="weight of the point")
-left.legend()
-right.plot(*control[:4].T, "o--", color=BLACK, linewidth=1, label="control polygon")
-right.plot(*segment(control[:4], t).T, color=BLUE, linewidth=2.5, label="segment")
-for number, point in enumerate(control[:4]):
-    right.annotate(f"$P_{number}$", point, (6, 4), textcoords="offset points")
-right.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", xlim=(-1, 14.5), ylim=(-1, 9))
-right.legend(fontsize=8, loc="lower center")
-plot.finished(figure)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, width=11, height=4.2)
+shares = {f"P{number}": weights[:, number] for number in range(4)}
+plot.lines(t, shares, "parameter t", "weight of the point", axes=panels[0])
+plot.diagram("x [m]", "y [m]", paths={"control polygon": control[:4], "segment": segment(control[:4], t)},
+             notes={f"P{n}": point for n, point in enumerate(control[:4])}, x_range=(-1, 14.5), y_range=(-1, 9),
+             colors={"control polygon": "0.5"}, axes=panels[1])  # fmt: skip
+figure
 
 # %% [markdown]
 # The weights are at least 0 and their sum is 1: each segment stays within the hull of its four points. The next one
@@ -104,19 +98,15 @@ phantom = np.vstack([2 * control[0] - control[1], control, 2 * control[-1] - con
 by_hand = np.vstack([segment(phantom[i : i + 4], t[:-1]) for i in range(len(phantom) - 3)] + [control[-1:]])
 assert np.abs(cubic_bspline(control, per_segment=50) - by_hand).max() < 1e-12
 
-# %%
-figure, panels = plt.subplots(1, 2, figsize=(11, 3.9), dpi=plot.DPI, layout="constrained", sharey=True)
-panels[0].plot(*segment(control[:4], t).T, color=ORANGE, linewidth=6, alpha=0.6, label="as printed: $P_0 … P_3$")
-panels[0].plot(*cubic_bspline(control, 50, ends="none").T, color=BLUE, label="$P_i … P_{i+3}$")
-panels[1].plot(*by_hand.T, color=BLUE, label="phantom ends")
-panels[1].plot(*cubic_bspline(control, 50, ends="clamped").T, "-.", color=ORANGE, label="clamped ends")
-panels[1].plot(*phantom[[0, -1]].T, "s", color=BLUE, markerfacecolor="white", label="phantom points")
-for axes in panels:
-    axes.plot(*control.T, "o--", color=BLACK, linewidth=0.8, markersize=4, label="control polygon")
-    axes.set(xlabel="x [m]", aspect="equal")
-    axes.legend(fontsize=8)
-panels[0].set_ylabel("y [m]")
-plot.finished(figure)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, share="y", width=11, height=4.6)
+polygon, colors = {"control polygon": control}, {"control polygon": "0.5", "phantom points": BLACK}
+first = {"as printed: P₀ … P₃": segment(control[:4], t), "Pᵢ … Pᵢ₊₃": cubic_bspline(control, 50, ends="none")}
+ends = {"phantom ends": by_hand, "clamped ends": cubic_bspline(control, 50, ends="clamped")}
+plot.diagram("x [m]", "y [m]", paths=polygon | first, colors=colors, axes=panels[0])
+plot.diagram("x [m]", "y [m]", paths=polygon | ends, points={"phantom points": phantom[[0, -1]]}, colors=colors,
+             axes=panels[1])  # fmt: skip
+figure
 
 # %% [markdown]
 # **The basis.** The papers also write the curve as a sum of basis functions (RISK-ACO Eq. 18, PSO-BAS Eqs 22 to 24):
@@ -147,24 +137,17 @@ assert degree == 3
 assert np.allclose(printed[at_knots].sum(axis=1), 2)
 assert np.allclose(ours[inner].sum(axis=1), 1, atol=1e-14)
 
-# %%
-figure, panels = plt.subplots(1, 2, figsize=(11, 3.4), dpi=plot.DPI, layout="constrained", sharey=True)
-panels[0].plot(t, ours, color="0.6", linewidth=1)
-panels[0].plot(t, ours[:, 3], color=BLUE, linewidth=2.5, label="$B_{3,3}$: four intervals wide")
-panels[0].plot(t, ours.sum(axis=1), "--", color=BLACK, label="sum of all")
-panels[0].set_title("half-open intervals (ours)", fontsize=10)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, share="y", width=11, height=4.0)
+one = {"B₃,₃: four intervals wide": ours[:, 3]}
+plot.lines(t, one | {"sum of all": ours.sum(axis=1)}, "parameter t", "basis functions", y_range=(-0.1, 3.0),
+           title="half-open intervals (ours)", axes=panels[0])  # fmt: skip
 smoothly = np.where(np.isclose(t % 1, 0), np.nan, printed.sum(axis=1))
-panels[1].plot(t, smoothly, "--", color=BLACK, label="sum between the knots")
-panels[1].plot(knots, printed[::40].sum(axis=1), "o", color=ORANGE, label="sum at the knots")
-panels[1].plot(knots, printed[::40, 3], "D", color=BLUE, markersize=5, label="$B_{3,3}$ at the knots")
-panels[1].plot(t, ours[:, 3], color=BLUE, linewidth=1, label="$B_{3,3}$ between them")
-panels[1].set_title("closed intervals (as printed)", fontsize=10)
-for axes in panels:
-    axes.set(xlabel="t", xticks=knots)
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8, loc="upper center", ncols=2)
-panels[0].set(ylabel="basis functions", ylim=(-0.1, 3.0))
-plot.finished(figure)
+at_knots = {"B₃,₃ at the knots": np.column_stack([knots, printed[::40, 3]]),
+            "sum at the knots": np.column_stack([knots, printed[::40].sum(axis=1)])}  # fmt: skip
+plot.lines(t, one | {"sum between the knots": smoothly}, "parameter t", "basis functions", points=at_knots,
+           title="closed intervals (as printed)", axes=panels[1])  # fmt: skip
+figure
 
 # %% [markdown]
 # Who evaluates the printed basis at the knots gets a UAV that jumps to twice its coordinates once per segment. Is ours
@@ -207,17 +190,13 @@ t = np.linspace(0, 6, 301)
 panels_of = [cubic_bspline(control, 50, derivative=n) for n in range(3)]
 names = ("r [m]", "r′ [m per segment]", "r″ [m per segment²]", "r‴ [m per segment³]")
 values_of = [*panels_of, np.repeat(np.diff(phantom, 3, axis=0), 2, axis=0)]
-figure, panels = plt.subplots(1, 4, figsize=(12, 3.2), dpi=plot.DPI, layout="constrained")
+figure, panels = plot.new_panels(1, 4, width=12, height=3.6)
 for axes, name, values in zip(panels, names, values_of, strict=True):
-    at = t if len(values) == 301 else np.repeat(np.arange(7), 2)[1:-1]
-    for number, (color, style) in enumerate(((ORANGE, "-"), (BLUE, "--"))):
-        axes.plot(at, values[:, number], style, color=color, label=("x", "y")[number])
-    axes.set(xlabel="parameter [segments]", title=name, xticks=range(7))
-    axes.grid(alpha=0.3)
-panels[0].legend()
+    at = t if len(values) == 301 else np.repeat(np.arange(7), 2)[1:-1] + np.tile([0, -1e-6], 6)
+    plot.lines(at, {"x": values[:, 0], "y": values[:, 1]}, "parameter [segments]", name, axes=axes)
 jumps = [np.abs(np.diff(values, axis=0)).max() for values in panels_of]
 assert max(jumps) < 0.5 < 5 < np.abs(np.diff(phantom, 4, axis=0)).max()  # steps of 1/50 of a segment, and a jump
-plot.finished(figure)
+figure
 
 # %% [markdown]
 # **Local control.** A point has a weight in four segments only. Move it, and the rest of the curve stays as it was,
@@ -232,14 +211,10 @@ before, after = cubic_bspline(way, 40), cubic_bspline(moved, 40)
 changed = np.array([(before[40 * i : 40 * i + 41] != after[40 * i : 40 * i + 41]).any() for i in range(10)])
 print(f"moving control point 5 of 0 to 10 changes segments {np.flatnonzero(changed)} of 0 to 9")
 assert np.flatnonzero(changed).tolist() == [3, 4, 5, 6]
-figure, axes = plot.new_figure(9, 3.0)
-axes.plot(*way.T, "o--", color="0.6", linewidth=0.8, markersize=4, label="control points")
-axes.plot(*moved[5], "o", color=ORANGE, label="point 5, moved by 7 m")
-axes.plot(*before.T, color=BLUE, label="before")
-axes.plot(*after[120:281].T, color=ORANGE, linewidth=2, label="after: segments 3 to 6")
-axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1, 1))
-plot.finished(figure)
+paths = {"control points": way, "before": before, "after: segments 3 to 6": after[120:281]}
+plot.diagram("x [m]", "y [m]", paths=paths, points={"point 5, moved by 7 m": moved[5:6]},
+             colors={"control points": "0.6", "before": BLUE, "after: segments 3 to 6": ORANGE,
+                     "point 5, moved by 7 m": ORANGE})  # fmt: skip
 
 # %% [markdown]
 # ## It cuts corners
@@ -373,7 +348,7 @@ plot.curve_profile(smoothed, of_swarm, speed=uav.cruise_speed, cell=campus.city.
 
 # %% [markdown]
 # So the claim can be met: on the exact route κ stays below 1 per voxel and the pitch is at most 45°, without a jump.
-# (The swarm's curve misses the first limit.) The lower dashed line is ours, and everything is above it.
+# (The swarm's curve misses the first limit.) The lower grey line is ours, and every bend is above it.
 #
 # ## Why "below 1" doesn't make it flyable
 #
@@ -515,19 +490,10 @@ print(f"exact route at 16 m/s, if it could: {deaths_at(smoothed, 16.0):.2f} deat
 assert np.median(table["exact, refined"], axis=0)[0] < greatest_speed(smoothed, uav)
 assert np.median(table["swarm, 1 waypoint"], axis=0)[2] < deaths_at(smoothed, fastest)
 
-# %%
-figure, axes = plot.new_figure(7.8, 4.4)
-marks = zip((BLACK, PINK, GREEN, YELLOW, BLUE, ORANGE, "0.5"), "Ds^vo*P", candidates, strict=True)
-for color, marker, name in marks:
-    axes.plot(table[name][:, 0], table[name][:, 2], marker, color=color, markersize=8, alpha=0.8, label=name)
-axes.axvline(uav.cruise_speed, color="0.3", linestyle="--", linewidth=1)
-axes.annotate("cruise speed", (15.8, 0.99), xycoords=("data", "axes fraction"), rotation=90, ha="right", va="top",
-              fontsize=8, color="0.3")  # fmt: skip
-axes.set(xlabel="greatest speed with 30° of bank [m/s]", ylabel="deaths per 10⁹ flights at that speed", xlim=(0, 20))
-axes.set_ylim(0, 1.2 * max(values[:, 2].max() for values in table.values()))
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+# %% tags=["figure"]
+plot.points({name: table[name][:, [0, 2]] for name in candidates}, "greatest speed within all limits [m/s]",
+            "deaths per 10⁹ flights at that speed", places={"cruise\nspeed": uav.cruise_speed}, x_range=(0, 20),
+            y_range=(0, 1.2 * max(values[:, 2].max() for values in table.values())))  # fmt: skip
 
 # %% [markdown]
 # Refining makes a curve *less* flyable: it moves points for the risk alone. Slower isn't safer: the route of least

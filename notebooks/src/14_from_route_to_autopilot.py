@@ -424,23 +424,16 @@ assert abs(np.nanstd(offsets[:, 40]) / sigma[40] - 1) < 0.2
 assert 0.05 < push < 0.3
 
 # %% tags=["figure"]
-figure, axes = plot.new_figure(7.2, 4.0)
-BLACK, BLUE, ORANGE = plot.BLACK, plot.BLUE, plot.ORANGE
-axes.plot(time, offsets.T, color=BLUE, linewidth=0.5, alpha=0.35)
-for sign in (-1, 1):
-    axes.plot(time, sign * 3 * sigma, color=BLACK, linewidth=2, label="3σ of gusts and GPS" if sign > 0 else None)
-    axes.plot(
-        time, sign * 3 * push + 0 * sigma, "--", color=ORANGE, linewidth=2, label="3σ of gusts" if sign > 0 else None
-    )
-axes.plot([], [], color=BLUE, label="200 flights, the truth")
-axes.set(xlabel="time after take-off [s]", ylabel="offset to the side [m]")
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8, loc="upper left")
-plot.finished(figure)
+bands = {"3σ of gusts and GPS": (-3 * sigma, 3 * sigma), "3σ of gusts": (-3 * push + 0 * sigma, 3 * push + 0 * sigma)}
+figure = plot.lines(time, {}, "time after take-off [s]", "offset to the side [m]", bands=bands)
+figure.axes[0].plot(time, offsets.T, color="0.3", linewidth=0.4, alpha=0.3, label="_")
+figure.axes[0].plot([], [], color="0.3", linewidth=0.4, label="200 flights, the truth")
+figure.axes[0].legend(fontsize=8, loc="upper left")
+figure
 
 # %% [markdown]
-# *True offsets of 200 flights, one blue line each.* Nearly all stay within the black curves, which grow like the square
-# root of the time; 99.7 % should. (The lines jump where the drone turns: its side is another one then.) What gusts add,
+# *True offsets of 200 flights, one grey line each.* Nearly all stay within the blue band, which grows like the
+# square root of the time; 99.7 % should. (The lines jump where the drone turns: its side is another one then.) What gusts add,
 # and the ground station sees, is the narrow orange band. The route keeps 4.3 m to the walls. That is what $3\sigma$ has
 # become at the end of this flight. A longer one between such walls needs another way to know where it is.
 #
