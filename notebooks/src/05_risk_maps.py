@@ -610,8 +610,8 @@ for (paper, claim), column in zip(CLAIMED.items(), cuts.swapaxes(0, 1), strict=T
 figure, panels = plot.new_panels(1, 2, share="y", width=9.4, height=4.4)
 least_cut = np.linspace(0, 100, 401)
 for axes, (paper, claim), column in zip(panels, CLAIMED.items(), cuts.swapaxes(0, 1), strict=True):
-    reached = 100 * (100 * column[..., None] >= least_cut).mean(axis=0)
-    plot.lines(least_cut, dict(zip(READINGS, reached, strict=False)), "cut of the risk [%]",
+    share = 100 * (100 * column[..., None] >= least_cut).mean(axis=0)
+    plot.lines(least_cut, dict(zip(READINGS, share, strict=False)), "cut of the risk [%]",
                "share of 40 campuses that reach it [%]", places={f"{paper}:\n−{claim:.0%}": 100 * claim}, axes=axes,
                y_range=(0, 102), title=f"at most {ALLOWED[paper] - 1:+.1%} of length", colors=COLORS)  # fmt: skip
 figure
