@@ -12,6 +12,8 @@ FIELD_OF_VIEW_DEG = 40.0
 """From the lower to the upper end of the frame."""
 MARGIN = 1.04
 """The frame over what is to be seen."""
+CLOSEST = 0.1
+"""What is to be seen is at least so far from the eye, as a share of the distance of the target."""
 DIRECTIONS = {"overview": (-61.0, 38.0), "above": (-90.0, 90.0), "side": (-90.0, 4.0)}
 """Azimuth, from east to north, and height above the horizon of the eye, as seen from the map [degrees]."""
 CAMERAS = (*DIRECTIONS, "chase")
@@ -55,17 +57,19 @@ def fitted(corners: np.ndarray, azimuth_deg: float, elevation_deg: float, aspect
     """The nearest view in a direction that has all points (N, 3) in a frame of an aspect, width over height.
 
     With a, b, w the coordinates to the right, up and towards the eye, and t the tangent of half of the field of view,
-    a point is in the frame of an eye at (x, D) if |a − x| ≤ (D − w) t; so D = (max(a + w t) + max(−a + w t)) / 2t.
-    Then x is where the picture is in the middle.
+    a point is in the frame of an eye at (x, D) if |a − x| ≤ (D − w) t; so D = (max(a + w t) + max(−a + w t)) / 2t,
+    unless a point would be at the eye. Then x is where the picture is in the middle.
     """
     axes = axes_of(azimuth_deg, elevation_deg)
     upright = np.tan(np.radians(FIELD_OF_VIEW_DEG) / 2) / MARGIN
     *sideways, toward = axes @ corners.T
-    distance = 0.0
+    middle = (toward.min() + toward.max()) / 2  # the target lies there, amid of what is to be seen
+    toward = toward - middle
+    distance = toward.max() / (1 - CLOSEST)
     for across, tangent in zip(sideways, (aspect * upright, upright), strict=True):
         high, low = (across + tangent * toward).max(), (-across + tangent * toward).max()
         distance = max(distance, (high + low) / (2 * tangent))
-    target = np.array([middle_of(across, distance - toward) for across in sideways]) @ axes[:2]
+    target = np.array([middle_of(across, distance - toward) for across in sideways] + [middle]) @ axes
     return View(target + distance * axes[2], target, axes[1])
 
 

@@ -145,18 +145,18 @@ def fill(pixels, near, corners, colors, opacity):
         area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
         if aw <= 0 or bw <= 0 or cw <= 0 or area == 0:
             continue
+        if area < 0:
+            (bx, by, bw), (cx, cy, cw), area = (cx, cy, cw), (bx, by, bw), -area
         left, right = max(0, int(np.floor(min(ax, bx, cx)))), min(width - 1, int(np.ceil(max(ax, bx, cx))))
         top, bottom = max(0, int(np.floor(min(ay, by, cy)))), min(height - 1, int(np.ceil(max(ay, by, cy))))
         for row in range(top, bottom + 1):
             y = row + 0.5
             for column in range(left, right + 1):
                 x = column + 0.5
-                a = ((bx - x) * (cy - y) - (by - y) * (cx - x)) / area
-                b = ((cx - x) * (ay - y) - (cy - y) * (ax - x)) / area
-                c = 1.0 - a - b
+                a, b, c = inward(bx, by, cx, cy, x, y), inward(cx, cy, ax, ay, x, y), inward(ax, ay, bx, by, x, y)
                 if a < 0 or b < 0 or c < 0:
                     continue
-                depth = a * aw + b * bw + c * cw
+                depth = (a * aw + b * bw + c * cw) / area
                 if depth <= near[row, column]:
                     continue
                 for channel in range(3):
@@ -164,6 +164,15 @@ def fill(pixels, near, corners, colors, opacity):
                     pixels[row, column, channel] = opacity * colors[t, channel] + (1.0 - opacity) * behind
                 if opacity == 1.0:
                     near[row, column] = depth
+
+
+@compiled
+def inward(px, py, qx, qy, x, y):
+    """Twice the area between an edge and a point, below 0 outside; an edge belongs to one of its two triangles."""
+    area = (px - x) * (qy - y) - (py - y) * (qx - x)
+    if area == 0 and (qy < py or (qy == py and qx < px)):
+        return -1.0
+    return area
 
 
 @compiled

@@ -53,14 +53,16 @@ function playScene(commands, arrays, scene) {
   function fit(azimuth, elevation) {  // as fitted() in scene/camera.py
     const axes = axesOf(azimuth, Math.min(elevation, 89.9));
     const tangent = Math.tan(camera.fov * RADIANS / 2) / scene.margin;
-    let distance = 0;
-    [camera.aspect * tangent, tangent].forEach((t, axis) => {
-      const high = Math.max(...corners.map(c => dot(c, axes[axis]) + t * dot(c, axes[2])));
-      const low = Math.max(...corners.map(c => -dot(c, axes[axis]) + t * dot(c, axes[2])));
+    const [across, upward, toward] = axes.map(axis => corners.map(corner => dot(corner, axis)));
+    const middle = (Math.max(...toward) + Math.min(...toward)) / 2;
+    let distance = (Math.max(...toward) - middle) / (1 - scene.closest);
+    for (const [places, t] of [[across, camera.aspect * tangent], [upward, tangent]]) {
+      const high = Math.max(...places.map((a, i) => a + t * (toward[i] - middle)));
+      const low = Math.max(...places.map((a, i) => -a + t * (toward[i] - middle)));
       distance = Math.max(distance, (high + low) / (2 * t));
-    });
-    const place = [0, 1].map(axis => middleOf(corners.map(c => [dot(c, axes[axis]), distance - dot(c, axes[2])])));
-    const target = sum([place[0], axes[0]], [place[1], axes[1]]);
+    }
+    const place = [across, upward].map(places => middleOf(places.map((a, i) => [a, distance + middle - toward[i]])));
+    const target = sum([place[0], axes[0]], [place[1], axes[1]], [middle, axes[2]]);
     look(sum([1, target], [distance, axes[2]]), target);
   }
   function middleOf(points) {  // across and depth of each: from where they reach equally far to both sides
