@@ -117,8 +117,8 @@ def test_the_clock_runs_at_the_speed_that_is_chosen(opened, city, flights):
         page.wait_for_timeout(2000)
         page.click("#play")
         shown.append(float(page.inner_text("#clock").split()[0]))
-    assert 1.5 < shown[0] / 0.25 < 3.5
-    assert 1.5 < shown[1] < 3.5
+    assert 2 < shown[1] / max(shown[0], 0.1) < 8  # four times as fast; a busy machine draws few frames
+    assert 0.8 < shown[1] < 3.5
 
 
 @pytest.mark.parametrize("camera", ["overview", "above", "side", "chase", (30.0, 20.0)])

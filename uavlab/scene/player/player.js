@@ -139,7 +139,7 @@ function playScene(commands, arrays, scene) {
     requestAnimationFrame(tick);
     if (!playing) return;
     if (last !== null) {
-      const ahead = now + Math.min(moment - last, 200) / 1000 * Number(at("speed").value);
+      const ahead = now + Math.min(moment - last, 500) / 1000 * Number(at("speed").value);
       if (now >= scene.duration) { rest += moment - last; if (rest > 1500) { rest = 0; seek(0); } }
       else { rest = 0; seek(ahead); }
     }
