@@ -11,6 +11,7 @@ from uavlab.flight import Flight, Flights, OffsetProcess, Rate, crash_rate, fly,
 from uavlab.flight.state import COLUMNS
 from uavlab.resilience import ConditionCheck, Monitor
 from uavlab.route import Route
+from uavlab.spline import Curve
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Wind
 
@@ -154,6 +155,22 @@ def test_a_vertical_leg_keeps_the_course_before_it_and_east_if_there_is_none():
     assert up.offset == pytest.approx(np.tile([2, 3, -1], (len(up.log), 1)))
     after = fly(Route([(50, 50, 10), (50, 90, 10), (50, 90, 40)]), SKY, LIGHT_QUADROTOR, mean, rng=0)
     assert after.offset == pytest.approx(np.tile([3, -2, -1], (len(after.log), 1)))
+
+
+def test_a_flight_knows_where_it_should_have_arrived():
+    """Whether it arrives, crashes, or stays on the ground; of a curve, too."""
+    city, route = beside_wall(1.0)
+    crash = fly(route, city, LIGHT_QUADROTOR, OffsetProcess(3.0), rng=1)
+    arrived = fly(straight(), SKY, LIGHT_QUADROTOR, OffsetProcess(0.1), rng=1)
+    grounded = fly(straight(), SKY, LIGHT_QUADROTOR, Wind((40.0, 0.0)), rng=1)
+    curve = Curve([(20, 150, 50), (60, 150, 50), (90, 180, 60), (120, 180, 60)])
+    curved = fly(curve, SKY, LIGHT_QUADROTOR, OffsetProcess(0.1), rng=1)
+    outcomes = [flight.outcome for flight in (crash, arrived, grounded, curved)]
+    assert outcomes == ["crashed", "arrived", "grounded", "arrived"]
+    assert crash.goal == pytest.approx(route.points[-1])
+    for flight in (arrived, grounded):
+        assert flight.goal == pytest.approx([120, 150, 50])
+    assert curved.goal == pytest.approx([120, 180, 60])
 
 
 def test_a_flown_log_agrees_with_itself():

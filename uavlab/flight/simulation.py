@@ -173,7 +173,8 @@ def fly(
     checks.whole("number", number, least=0, most=MOST_FLIGHTS - 1)
     setup, grounded = setup_of(route, city, uav, disturbance, autopilot, time_step)
     if setup is None:
-        return Flight("grounded", grounded, np.empty((0, len(COLUMNS))), np.inf, None)
+        goal = as_route(route).points[-1]
+        return Flight("grounded", grounded, np.empty((0, len(COLUMNS))), np.inf, None, goal=goal)
     return flown(setup, checks.generator("rng", rng).spawn(number + 1)[number], every=1)
 
 

@@ -118,7 +118,8 @@ def draw_city(drawing: Drawing, city: City) -> None:
         edges = edges[np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) > 4 * THIN]
         edges = edges[not_twice(edges)].reshape(-1, 3)
     drawing.parts["buildings"] = Surface(triangles, colors, closed=len(triangles) == count)
-    drawing.parts["edges"] = Lines(edges, EDGE_COLOR)
+    if len(edges):
+        drawing.parts["edges"] = Lines(edges, EDGE_COLOR)
     show_too(drawing, triangles)
 
 
