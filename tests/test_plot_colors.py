@@ -1,68 +1,102 @@
-"""Colours by name: the same thing looks the same in all figures."""
+"""One thing, one colour: planners have their own, others what is asked for or what is free."""
+
+import itertools
 
 import pytest
+from matplotlib.colors import to_rgb
 
 from uavlab import plot
-from uavlab.plot.colors import LINES, PLANNER_COLORS, styles
+from uavlab.plot.colors import LINES, PLANNER_COLORS, Style, checked_colors
 
 
-def colors_of(*names, **asked):
-    return [style.color for style in styles(list(names), asked or None)]
+def test_a_planner_is_drawn_in_its_own_colour_whoever_is_beside_it():
+    for names in (["A*"], ["mine", "A*"], ["REPARE", "A*", "mine"], ["A*", "potential field", "hazard A*"]):
+        look = plot.styles(names)[names.index("A*")]
+        assert look == Style(plot.BLUE, "-")
+    for name, color in PLANNER_COLORS.items():
+        assert plot.styles([name]) == [Style(color, LINES[color])]
 
 
-def test_planners_look_the_same_in_any_company_and_order():
-    alone = {name: styles([name])[0] for name in PLANNER_COLORS}
-    assert alone["A*"] == (plot.BLUE, "-")
-    for names in (["mine", "A*", "REPARE"], ["REPARE", "other", "A*"], ["x", "y", "z", "A*"]):
-        looks = dict(zip(names, styles(names), strict=True))
-        assert looks["A*"] == alone["A*"]
-        assert looks.get("REPARE", alone["REPARE"]) == alone["REPARE"]
+def test_planners_that_are_compared_differ():
+    """Those of the chapters: on a grid, of least risk, swarms."""
+    for names in (
+        ["A*", "potential field", "REPARE", "hazard A*", "Theta*", "A* + shortcut", "least risk"],
+        ["ACO", "PSO", "PSO-BAS", "PSO-ACO", "BAS", "least risk", "A*"],
+        ["least risk", "least energy", "ant colony", "A*"],
+    ):
+        looks = plot.styles(names)
+        assert len({look.color for look in looks}) == len({look.line for look in looks}) == len(names)
 
 
-def test_others_get_free_colours_with_their_line_styles():
-    looks = styles(["a", "A*", "b", "REPARE", "c"])
-    assert len({look.color for look in looks}) == 5
-    assert len({str(look.line) for look in looks}) == 5
-    assert all(LINES[look.color] == look.line for look in looks)
-
-
-def test_what_is_asked_for_is_given_and_nobody_else_has_it():
-    assert colors_of("A*", "mine", mine="#0072b2") == [plot.BLUE, plot.BLUE]  # both are said to be blue
-    assert colors_of("safe", "fast", safe=plot.GREEN, fast=plot.PINK) == [plot.GREEN, plot.PINK]
-    assert colors_of("other", "safe", safe="tab:red")[1] == "#D62728"
-    assert styles(["safe"], {"safe": "tab:red", "not drawn": "red"})[0].line == "-"
-    assert plot.GREEN not in colors_of("a", "b", "c", "d", "e", "safe", safe=plot.GREEN)[:5]
-
-
-def test_a_name_that_comes_twice_is_two_things():
-    first, second = colors_of("A*", "A*")
-    assert first == plot.BLUE != second
+def test_others_get_colours_that_are_free():
+    for count in range(1, 8):
+        names = [f"way {n}" for n in range(count)]
+        assert len({look.color for look in plot.styles(names)}) == count
+        looks = plot.styles([*names[:-1], "A*"])
+        assert len({look.color for look in looks}) == count
+        assert looks[-1].color == plot.BLUE
+    assert {look.color for look in plot.styles([f"way {n}" for n in range(7)])} == set(LINES)
 
 
 def test_after_seven_they_come_again():
-    assert len(LINES) == 7
-    names = [f"route {number}" for number in range(16)]
-    colors = colors_of(*names)
-    assert len(set(colors[:7])) == 7
-    assert colors[7:14] == colors[:7]
-    assert styles([]) == []
+    looks = plot.styles([f"way {n}" for n in range(16)])
+    assert looks[7:14] == looks[:7]
+    assert looks[14:] == looks[:2]
+    assert plot.styles([]) == []
 
 
-def test_no_planner_has_the_colour_of_a_crash():
-    assert plot.CRASH_COLOR not in [*LINES, *PLANNER_COLORS.values()]
+def test_what_is_asked_for_is_given_even_twice():
+    colors = {"a": plot.GREEN, "b": "tab:red", "c": (1.0, 0.0, 0.0), "A*": "C1", "not drawn": "k"}
+    looks = plot.styles(["a", "b", "c", "A*", "d"], colors)
+    for name, look in zip(["a", "b", "c", "A*"], looks, strict=False):
+        assert to_rgb(look.color) == pytest.approx(to_rgb(colors[name]), abs=0.002)
+        assert look.color == look.color.upper()
+    assert looks[0].line == LINES[plot.GREEN]
+    assert looks[1].line == "-"
+    assert looks[4].color not in {look.color for look in looks[:4]}
+    same = plot.styles(["a", "b", "a"], dict.fromkeys("ab", plot.PINK))
+    assert [look.color for look in same] == 3 * [plot.PINK]
+
+
+def test_a_name_that_comes_twice_is_two_things():
+    first, second, third = plot.styles(["A*", "A*", "mine"])
+    assert first.color == plot.BLUE
+    assert len({first, second, third}) == 3
+
+
+def test_two_planners_of_one_colour_are_told_apart():
+    for one, other in itertools.combinations(PLANNER_COLORS, 2):
+        assert len(set(plot.styles([one, other]))) == 2, (one, other)
+
+
+def test_colours_have_a_line_style_of_their_own():
+    assert len(set(LINES.values())) == len(LINES) == 7
+    assert set(PLANNER_COLORS.values()) <= set(LINES)
 
 
 @pytest.mark.parametrize(
     ("names", "colors", "message"),
     [
-        ("A*", None, "names must be a list of texts, got 'A\\*'"),
-        ([1], None, "names must be a list of texts"),
-        (None, None, "names must be a list of texts"),
-        (["a"], {"a": "bluish"}, r"colors\['a'\] must be a colour, such as plot.BLUE, got 'bluish'"),
-        (["a"], {1: "blue"}, r"colors\[1\] must be a colour"),
-        (["a"], ["blue"], "colors must be colours by name"),
+        ("A*", None, "names must be a list of texts, got 'A"),
+        ([1, 2], None, r"names must be a list of texts, got \[1, 2\]"),
+        (None, None, "names must be a list of texts, got None"),
+        ({"a"}, None, "names must be a list of texts"),
+        (["a"], ["red"], "colors must be colours by name, as in"),
+        (["a"], "red", "colors must be colours by name, as in .* got 'red'"),
+        (["a"], {"a": "reddish"}, r"colors\['a'\] must be a colour, such as plot.BLUE, got 'reddish'"),
+        (["a"], {"b": 3}, r"colors\['b'\] must be a colour, such as plot.BLUE, got 3"),
+        (["a"], {1: "red"}, r"colors\[1\] must be"),
     ],
 )
-def test_what_is_no_colour_is_refused(names, colors, message):
+def test_wrong_question(names, colors, message):
     with pytest.raises(ValueError, match=message):
-        styles(names, colors)
+        plot.styles(names, colors)
+
+
+def test_colours_are_checked_and_copied():
+    assert checked_colors(None) == {}
+    assert checked_colors({"a": "red"}) == {"a": "#FF0000"}
+
+
+def test_no_planner_has_the_colour_of_a_crash():
+    assert plot.CRASH_COLOR not in [*LINES, *PLANNER_COLORS.values()]

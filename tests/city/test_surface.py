@@ -1,89 +1,153 @@
-"""The outer surface of buildings of several pieces: nothing inside is kept, nothing outside is lost."""
+"""Surfaces of buildings as they are drawn: closed forms, no walls inside, and nothing lost that can be seen."""
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapely
 
 from uavlab.city import Building, table1_buildings
 
-ELL = [(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)]
-BLOCK, COURT = [(0, 0), (30, 0), (30, 20), (0, 20)], [(10, 5), (20, 5), (20, 15), (10, 15)]
+L_SHAPE = [(0, 0), (30, 0), (30, 10), (10, 10), (10, 40), (0, 40)]
+BOX = [(0, 0), (10, 0), (10, 10), (0, 10)]
 
 
 def volume_of(triangles):
-    a, b, c = triangles.transpose(1, 0, 2)
-    return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+    """By the divergence theorem: a sixth of the sum of a · (b × c)."""
+    return np.einsum("ij,ij->i", triangles[:, 0], np.cross(triangles[:, 1], triangles[:, 2])).sum() / 6
 
 
 def area_of(triangles):
-    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    return np.linalg.norm(normals, axis=1).sum() / 2
+    across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    return np.linalg.norm(across, axis=1).sum() / 2
 
 
-def first_hits(triangles, origins, directions):
-    """How far along rays (R, 3) the first of the triangles is hit, (R,)."""
+def lines_of(building):
+    """Edges as sorted pairs of corners."""
+    return sorted(tuple(sorted(map(tuple, pair))) for pair in building.edges().reshape(-1, 2, 3).round(6).tolist())
+
+
+def hits(triangles, eyes, rays):
+    """How far along each ray (N, 3) the first triangle is, by Möller and Trumbore; infinite where there is none."""
     a, ab, ac = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    hits = []
-    for origin, direction in zip(origins, directions, strict=True):
-        across = np.cross(direction, ac)
-        determinant = np.einsum("ij,ij->i", across, ab)
+    nearest = np.full(len(eyes), np.inf)
+    for number, (eye, ray) in enumerate(zip(eyes, rays, strict=True)):
+        p = np.cross(ray, ac)
+        across = np.einsum("ij,ij->i", ab, p)
         with np.errstate(divide="ignore", invalid="ignore"):
-            u = np.einsum("ij,ij->i", across, origin - a) / determinant
-            turned = np.cross(origin - a, ab)
-            v = turned @ direction / determinant
-            t = np.einsum("ij,ij->i", turned, ac) / determinant
-            hit = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (t > 0)
-        hits.append(t[hit].min() if hit.any() else np.inf)
-    return np.array(hits)
+            u = np.einsum("ij,ij->i", eye - a, p) / across
+            q = np.cross(eye - a, ab)
+            v, distance = q @ ray / across, np.einsum("ij,ij->i", ac, q) / across
+            met = (across != 0) & (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (distance > 0)
+        nearest[number] = distance[met].min(initial=np.inf)
+    return nearest
 
 
-@pytest.mark.parametrize(
-    ("building", "volume", "area"),
-    [
-        (Building.prism(ELL, 3), 60, 2 * 20 + 3 * 24),
-        (Building.prism(BLOCK, 12, holes=[COURT]), 500 * 12, 2 * 500 + 12 * (100 + 40)),
-        (Building.prism(BLOCK, 12), 600 * 12, 2 * 600 + 12 * 100),
-    ],
-    ids=["ell", "courtyard", "box"],
-)
-def test_walls_between_pieces_are_left_out(building, volume, area):
-    assert volume_of(building.triangles()) == pytest.approx(volume)
-    assert area_of(building.triangles()) == pytest.approx(area)
+def test_l_shape_has_no_walls_inside():
+    building = Building.prism(L_SHAPE, 12, bottom=2)
+    assert len(building.pieces) > 1
+    triangles, polygon = building.triangles(), shapely.Polygon(L_SHAPE)
+    assert volume_of(triangles) == pytest.approx(polygon.area * 10)  # outside is outside: each counter-clockwise
+    assert area_of(triangles) == pytest.approx(2 * polygon.area + 10 * polygon.length)
+    walls = triangles[np.ptp(triangles[..., 2], axis=1) > 0]
+    for x, y, _ in walls.mean(axis=1):
+        assert polygon.boundary.distance(shapely.Point(x, y)) < 1e-9
 
 
-SOLIDS = [*table1_buildings(), Building.prism(ELL, 3), Building.prism(BLOCK, 9, holes=[COURT])]
+def test_edges_are_where_it_bends():
+    """18 of an L; none between the triangles of its roof, nor on a wall."""
+    corners = [(x, y, z) for x, y in L_SHAPE for z in (0.0, 12.0)]
+    rings = [[(*L_SHAPE[n], z) for n in (k, (k + 1) % 6)] for k in range(6) for z in (0.0, 12.0)]
+    uprights = [corners[2 * k : 2 * k + 2] for k in range(6)]
+    expected = sorted(tuple(sorted(tuple(map(float, end)) for end in pair)) for pair in rings + uprights)
+    assert lines_of(Building.prism(L_SHAPE, 12)) == expected
 
 
-@pytest.mark.parametrize("building", SOLIDS)
-def test_nothing_that_can_be_seen_is_lost(building):
-    rng = np.random.default_rng(4)
-    center, reach = building.bounds.mean(axis=0), np.linalg.norm(np.ptp(building.bounds, axis=0))
-    outward = rng.normal(size=(300, 3))
-    origins = center + reach * outward / np.linalg.norm(outward, axis=1, keepdims=True)
-    directions = center + rng.uniform(-0.4, 0.4, (300, 3)) * np.ptp(building.bounds, axis=0) - origins
-    pieces = np.concatenate([hull.triangles for hull in building.hulls])
-    found, expected = (first_hits(triangles, origins, directions) for triangles in (building.triangles(), pieces))
-    assert found == pytest.approx(expected)
-    assert np.isfinite(expected).mean() > 0.5
+def test_bends_flatter_than_ten_degrees_have_no_edge():
+    def arched(degrees):
+        rise = 5 * np.tan(np.radians(degrees / 2))  # both slopes are half as steep as the bend between them
+        return Building.roofed(BOX, 5, [(5, 0, 5 + rise), (5, 10, 5 + rise)])
+
+    ridge = lambda building: [pair for pair in lines_of(building) if pair[0][0] == pair[1][0] == 5.0]  # noqa: E731
+    assert ridge(arched(9.5)) == []
+    assert len(ridge(arched(10.5))) == 1
 
 
-def test_edges_are_drawn_where_the_surface_bends_and_not_across_a_flat_roof():
-    edges = Building.prism(ELL, 3).edges().reshape(-1, 2, 3)
-    assert len(edges) == 18
-    lengths = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1)
-    assert lengths.sum() == pytest.approx(2 * 24 + 6 * 3)
+def test_courtyard_is_a_tube():
+    hole = [(3, 3), (7, 3), (7, 7), (3, 7)]
+    triangles = Building.prism(BOX, 5, holes=[hole]).triangles()
+    assert volume_of(triangles) == pytest.approx((100 - 16) * 5)
+    assert area_of(triangles) == pytest.approx(2 * (100 - 16) + 5 * (40 + 16))
 
 
-def test_a_sheet_of_thin_pieces_keeps_its_two_sides_and_its_rim():
-    """Terrain and trees come as triangles that were given a thickness."""
-    x, y = np.meshgrid(np.arange(5.0), np.arange(4.0), indexing="ij")
-    z = 0.02 * np.sin(x + 2 * y)  # bends by less than 10 degrees
-    points = np.stack([x, y, z], axis=-1)
-    corners = [points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]]
-    sheets = [np.stack([corners[i] for i in order], axis=-2).reshape(-1, 3, 3) for order in ((0, 1, 2), (0, 2, 3))]
-    triangles = np.concatenate(sheets)
-    building = Building(tuple(np.vstack([t, t + np.array([0, 0, 0.1])]) for t in triangles))
-    surface = building.triangles()
-    assert len(surface) == 2 * len(triangles) + 2 * 2 * (4 + 3)
-    edges = building.edges().reshape(-1, 2, 3)
-    ends = np.isin(np.round(edges[..., 0], 6), (0, 4)) | np.isin(np.round(edges[..., 1], 6), (0, 3))
-    assert ends.all()  # lines at the rim only
+def test_sheets_that_make_a_surface_have_no_walls_between_them():
+    """A sloped plane cut into strips, each a thin slab."""
+    across = np.linspace(0, 12, 5)
+    strips = [[(x, y, z + 0.5 * x) for x in pair for y in (0.0, 6.0) for z in (4.9, 5.0)] for pair in pairwise(across)]
+    slab = Building.hull([(x, y, z + 0.5 * x) for x in (0, 12) for y in (0, 6) for z in (4.9, 5.0)])
+    sheet = Building(tuple(np.array(strip) for strip in strips))
+    assert volume_of(sheet.triangles()) == pytest.approx(12 * 6 * 0.1)
+    assert area_of(sheet.triangles()) == pytest.approx(area_of(slab.triangles()))
+    assert not any(0 < end[0] < 12 and pair[0][0] == pair[1][0] for pair in lines_of(sheet) for end in pair)
+
+
+def test_pieces_that_are_the_same_are_there():
+    box = Building.prism(BOX, 5)
+    twice = Building(box.pieces + box.pieces)
+    assert area_of(twice.triangles()) == pytest.approx(2 * area_of(box.triangles()))
+    assert set(lines_of(twice)) == set(lines_of(box))
+
+
+def test_floors_that_two_pieces_share_from_above_can_be_seen_from_below():
+    """A low and a high block over one footprint, both above the ground."""
+    blocks = [Building.prism(BOX, top, bottom=2.0).pieces[0] for top in (5.0, 9.0)]
+    triangles = Building(tuple(blocks)).triangles()
+    assert hits(triangles, np.array([[4.0, 3.0, 0.0]]), np.array([[0.0, 0, 1]]))[0] == pytest.approx(2.0)
+
+
+def random_buildings():
+    """Towns' worst: table 1, prisms of stars with holes, roofed ones, unions that overlap, share walls, or float."""
+    rng = np.random.default_rng(7)
+    yield from table1_buildings()
+    for _ in range(12):
+        angle = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(6, 14)))
+        star = rng.uniform(9, 20, len(angle))[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+        ring = np.column_stack([np.cos(angle), np.sin(angle)])
+        holes = [2.0 * ring] if shapely.Polygon(star).contains(shapely.Polygon(2.0 * ring)) else []
+        prism = Building.prism(star, rng.uniform(5, 30), holes=holes, bottom=rng.choice([0.0, 4.0]))
+        roof = Building.roofed(np.array(BOX) + rng.uniform(-9, 9, 2), 8, [(0, 0, rng.uniform(9, 15))])
+        yield prism
+        yield Building(prism.pieces + roof.pieces)
+    left, right = (Building.prism(np.add(np.array(BOX), (shift, 0)), 7.0) for shift in (0, 10))
+    yield Building(left.pieces + right.pieces + left.pieces)
+
+
+@pytest.mark.parametrize("number", range(30))
+def test_nothing_that_is_seen_is_lost(number):
+    building = list(random_buildings())[number]
+    every = np.concatenate([hull.triangles for hull in building.hulls])
+    rng = np.random.default_rng(number)
+    low, high = building.bounds
+    middle, reach = (low + high) / 2, np.linalg.norm(high - low)
+    away = rng.normal(size=(150, 3))
+    eyes = middle + reach * away / np.linalg.norm(away, axis=1, keepdims=True)
+    rays = rng.uniform(low, high, (150, 3)) - eyes
+    expected, seen = hits(every, eyes, rays), hits(building.triangles(), eyes, rays)
+    assert np.isfinite(expected).sum() > 40
+    assert np.array_equal(np.isfinite(expected), np.isfinite(seen))
+    assert np.allclose(expected[np.isfinite(expected)], seen[np.isfinite(seen)], atol=1e-6)
+
+
+def test_surfaces_do_not_depend_on_where_the_map_begins():
+    near = Building.prism(L_SHAPE, 12)
+    far = Building.prism(np.add(np.array(L_SHAPE), (500_000.25, 5_700_000.5)), 12)
+    assert len(near.triangles()) == len(far.triangles())
+    assert len(near.edges()) == len(far.edges())
+    assert np.allclose(far.triangles() - (500_000.25, 5_700_000.5, 0), near.triangles(), atol=1e-6)
+
+
+def test_surfaces_can_not_be_written_to():
+    building = Building.prism(BOX, 5)
+    for values in (building.triangles(), building.edges()):
+        with pytest.raises(ValueError, match="read-only"):
+            values[0] = 0.0
