@@ -96,3 +96,20 @@ def test_a_matrix_colours_values_by_its_norm():
         plot.matrix([[1, 2]], ["r"], ["a", "a"], "row", "column", "share")
     with pytest.raises(ValueError, match="values must be at most 2,500 cells"):
         plot.matrix(np.ones((51, 50)), [str(n) for n in range(51)], [str(n) for n in range(50)], "r", "c", "value")
+
+
+def test_panels_of_one_row_and_norm_share_a_colour_bar():
+    _, panels = plot.new_panels(2, 3)
+    norm = Normalize(0, 5)
+    for number, axes in enumerate(panels):
+        scale = Normalize(0, 5) if number == 3 else norm
+        plot.matrix([[1.0, 2.0]], ["r"], ["a", "b"], "row", "column", "left [m]", norm=scale, axes=axes)
+    assert [len(axes.child_axes) for axes in panels] == [0, 0, 1, 1, 0, 1]
+
+
+def test_panels_with_other_labels_keep_their_colour_bars():
+    _, panels = plot.new_panels(1, 2)
+    norm = Normalize(0, 5)
+    for axes, label in zip(panels, ("left [m]", "right [m]"), strict=True):
+        plot.heat_map(LOAD, RAIN, WIND, *LABELS[:2], label, norm=norm, axes=axes)
+    assert [len(axes.child_axes) for axes in panels] == [1, 1]

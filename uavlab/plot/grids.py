@@ -65,7 +65,8 @@ def heat_map(
     notes : mapping of pairs, optional
         Texts with the point (x, y) beside which each stands.
     norm : matplotlib.colors.Normalize, optional
-        From values to colours, such as `LogNorm()`; by default evenly over the values.
+        From values to colours, such as `LogNorm()`; by default evenly over the values. Panels in one row that
+        have the same share a colour bar.
     equal : bool
         Whether both axes have the same scale, as two lengths have.
     title : str
@@ -163,7 +164,8 @@ def matrix(
     digits : int
         Behind the decimal point of what is written, 0 to 9.
     norm : matplotlib.colors.Normalize, optional
-        From values to colours; by default evenly over the values. Panels that are compared need the same.
+        From values to colours; by default evenly over the values. Panels that are compared need the same;
+        those in one row share a colour bar then.
     title : str
         Above the panel.
     axes : matplotlib.axes.Axes, optional

@@ -152,7 +152,8 @@ def value_map(
     area : (west, east, south, north), optional
         Part of the map to show [m], on the map at least in part; by default all of it.
     norm : matplotlib.colors.Normalize, optional
-        From values to colours; by default evenly over the values. Panels that are compared need the same.
+        From values to colours; by default evenly over the values. Panels that are compared need the same;
+        those in one row share a colour bar then.
     title : str
         Above the panel.
     colors : mapping of str, optional

@@ -173,8 +173,19 @@ def draw_map(axes: Axes, city: City, values: npt.ArrayLike, colors, **limits):
 
 
 def add_color_bar(figure: Figure, axes: Axes, image, label: str):
-    """A colour bar beside a map, as high as the map."""
+    """A colour bar beside a map, as high as the map; panels of one row and norm share that of the last."""
+    for other in [one for one in figure.axes if in_one_row(one, axes)]:
+        for drawn in [*other.images, *other.collections]:
+            bar = drawn.colorbar
+            if bar is not None and drawn.norm is image.norm and bar.ax.get_ylabel() == label:
+                bar.remove()
     return figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
+
+
+def in_one_row(one: Axes, other: Axes) -> bool:
+    """Whether two panels of a figure stand beside each other."""
+    first, second = one.get_subplotspec(), other.get_subplotspec()
+    return first is not None and second is not None and first.rowspan == second.rowspan and one is not other
 
 
 SIGNS: dict[str, dict[str, Any]] = {
