@@ -28,6 +28,22 @@ def test_planners_that_are_compared_differ():
         assert len({look.color for look in looks}) == len({look.line for look in looks}) == len(names)
 
 
+def test_variants_of_a_planner_have_its_colour_where_it_is_free():
+    for name, planner in {
+        "A* in gusts": "A*", "REPARE, replanned": "REPARE", "A* + shortcut, windy": "A* + shortcut",
+        "potential field: stuck": "potential field", "PSO-BAS (all 21)": "PSO-BAS", "PSO, printed": "PSO",
+    }.items():  # fmt: skip
+        assert plot.styles(["mine", name])[1].color == PLANNER_COLORS[planner]
+    for name in ("A* + other", "A*-like", "PSOs", "a REPARE", "least risks", "ACOustic"):
+        assert plot.styles([name])[0].color == plot.BLUE  # the first that is free
+    first, exact, second = plot.styles(["A* in gusts", "A*", "REPARE, mild"])
+    assert exact.color == plot.BLUE != first.color
+    assert second.color == plot.GREEN
+    calm, windy = plot.styles(["REPARE, calm", "REPARE, windy"])
+    assert calm.color == plot.GREEN != windy.color
+    assert plot.styles(["A* in gusts"], {"A* in gusts": plot.PINK, "A*": plot.SKY})[0].color == plot.PINK
+
+
 def test_others_get_colours_that_are_free():
     for count in range(1, 8):
         names = [f"way {n}" for n in range(count)]

@@ -27,7 +27,6 @@ from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
 from scipy.optimize import brentq
@@ -45,7 +44,10 @@ from uavlab.sweep import sweep
 
 # %%
 # NBVAL_CHECK_OUTPUT
-BLUE, GREEN, ORANGE, PINK = plot.BLUE, plot.GREEN, plot.ORANGE, plot.PINK
+COLORS = {
+    "PSO, ours": plot.PINK, "PSO, printed (ω = 1)": plot.ORANGE, "PSO-BAS, ours": plot.GREEN,
+    "exact optimum": plot.BLACK, "exact, refined": plot.BLUE,
+}  # fmt: skip
 start, goal = CAMPUS_FLIGHT
 campuses = [reference_campus(), *(random_campus(seed) for seed in range(11))]
 campus, optimum = campuses[0], least_risk(campuses[0], start, goal)
@@ -170,40 +172,36 @@ for inertia, (x, sizes) in walks.items():
 crossing = brentq(lambda w: stability(w, 1.5, 2.0)[1] - 1, 0.4, 0.9)
 print(f"the mean square stays the same at ω = {crossing:.2f}")
 assert stability(1.0, 1.5, 2.0)[0] > 1 - 1e-9
+assert 1.05 < np.median(np.abs(walks[1.0][0][60])) ** (1 / 60) < 1.07
 assert 0.66 < crossing < 0.73
 
-# %%
-figure, panels = plt.subplots(1, 3, figsize=(11.4, 3.6), dpi=plot.DPI, layout="constrained", sharey=True)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 3, share="y", width=11.4, height=4.0)
 for axes, inertia, says in zip(panels, (1.0, 0.9, 0.4), ("printed", "ours, at first", "ours, at last"), strict=True):
-    axes.semilogy(np.maximum(np.abs(walks[inertia][0][:, 1:25]), 1e-9), color="0.82", linewidth=0.7)
-    axes.semilogy([], color="0.82", label="24 others")
-    axes.semilogy(np.abs(walks[inertia][0][:, 0]), color=BLUE, linewidth=1.5, label="one particle")
-    axes.semilogy(np.sqrt(walks[inertia][1]), "--", color=ORANGE, linewidth=2, label="root mean square (Eq. 4)")
-    axes.set(xlabel="step", ylim=(1e-6, 1e6), xlim=(0, 60), title=f"ω = {inertia:g} ({says})")
-    axes.grid(alpha=0.3)
-panels[0].set_ylabel("distance from the best [first distance]")
-panels[0].legend(fontsize=8, loc="lower left")
-plot.finished(figure)
+    x, sizes = walks[inertia]
+    away = np.maximum(np.abs(x[:, :10_000]), 1e-12)
+    shown = {"median of 10,000 particles": np.median(away, axis=1), "root mean square (Eq. 4)": np.sqrt(sizes)}
+    middle = {"median of 10,000 particles": np.quantile(away, [0.05, 0.95], axis=1)}
+    plot.lines(np.arange(61), shown | {"one particle": away[:, 0]}, "step", "distance from the best [first distance]",
+               bands=middle, band_label="5 % to 95 %", log="y", y_range=(1e-6, 1e6), axes=axes,
+               title=f"ω = {inertia:g} ({says})")  # fmt: skip
+figure
 
-# %%
-inertia, pull = np.meshgrid(np.linspace(-1.1, 1.2, 231), np.linspace(0.02, 8.2, 206))
-mean, square = stability(inertia, 1.5 / 3.5 * pull, 2.0 / 3.5 * pull)
-figure, axes = plot.new_figure(7.6, 4.6)
-image = axes.pcolormesh(inertia, pull, square, cmap=plot.SEQUENTIAL, norm=LogNorm(0.25, 10), shading="nearest")
-figure.colorbar(image, label="factor of the mean square per step", ticks=[0.25, 0.5, 1, 2, 5, 10], format="%g")
-axes.plot([-1, 1, 1, -1], [0, 0, 8, 0], "--", color="white", linewidth=2, label="mean comes to rest (Eq. 3)")
-axes.contour(inertia, pull, square, [1.0], colors="white", linewidths=2)
-axes.plot([], [], color="white", linewidth=2, label="mean square comes to rest (Eq. 4)")
-axes.annotate("", (0.4, 3.5), (0.9, 3.5), arrowprops={"arrowstyle": "-|>", "color": ORANGE, "linewidth": 3})
-axes.plot([], [], color=ORANGE, linewidth=3, label="ours: ω from 0.9 to 0.4")
-axes.plot(1.0, 3.5, "D", color=PINK, markeredgecolor="white", markersize=9, label="printed: ω = 1", linestyle="none")
-axes.set(xlabel="inertia ω", ylabel="pull c₁ + c₂ (c₁ : c₂ = 1.5 : 2)")
-axes.legend(fontsize=8, loc="upper left", facecolor="0.45", labelcolor="white", framealpha=1.0)
-plot.finished(figure)
+# %% tags=["figure"]
+inertias, pulls = np.linspace(-1.1, 1.2, 231), np.linspace(0.02, 8.2, 206)
+grid = np.meshgrid(inertias, pulls, indexing="ij")
+square = stability(grid[0], 1.5 / 3.5 * grid[1], 2.0 / 3.5 * grid[1])[1]
+triangle, ours = [(-1, 0), (1, 0), (1, 8), (-1, 0)], [(0.9, 3.5), (0.4, 3.5)]
+plot.heat_map(
+    inertias, pulls, square, "inertia ω", "pull c₁ + c₂ (c₁ : c₂ = 1.5 : 2)", "factor of the mean square per step",
+    paths={"mean comes to rest within (Eq. 3)": triangle, "ours: ω from 0.9 to 0.4": ours}, contours=[1],
+    points={"printed: ω = 1": (1.0, 3.5)}, notes={"below: mean square comes to rest (Eq. 4)": (-0.35, 2.2)},
+    norm=LogNorm(0.25, 10),
+)  # fmt: skip
 
 # %% [markdown]
-# The printed swarm (diamond) is outside of both regions: its distance from the best grows by 14 % in a step, until the
-# border stops it. Ours begins in between, where the mean comes to rest and the size doesn't: the swarm *roams*. At
+# The printed swarm (the disc) is outside of both regions: the root mean square of its distance from the best grows by
+# 14 % in a step and that of half of the particles by 6 % and more, until the border stops them. Ours begins in between, where the mean comes to rest and the size doesn't: the swarm *roams*. At
 # $\omega = 0.69$ it crosses the line, and from there on it *settles*. On the three functions, in six dimensions, 4 000
 # evaluations, eleven seeds each:
 
@@ -268,20 +266,23 @@ assert all(typical("PSO, ours", f) < typical("PSO, printed (ω = 1)", f) / 4 for
 # NBVAL_CHECK_OUTPUT
 rng = np.random.default_rng(3)
 cloud = {"from a cube (PSO-BAS Eq. 17)": rng.uniform(-1, 1, (10**6, 2)), "Gaussian": rng.normal(size=(10**6, 2))}
-figure, axes = plt.subplots(figsize=(7.2, 4.2), dpi=plot.DPI, layout="constrained", subplot_kw={"projection": "polar"})
-for (name, drawn), (color, style) in zip(cloud.items(), plot.styles(list(cloud)), strict=True):
+shares = {}
+for name, drawn in cloud.items():
     angle = np.degrees(np.arctan2(drawn[:, 1], drawn[:, 0]))
     count, _ = np.histogram((angle + 2.5) % 360, 72, (0, 360))  # the first bin is about 0°
-    share = count / count.mean()
-    axes.plot(np.radians(np.arange(73) * 5), np.append(share, share[0]), color=color, linestyle=style, label=name)
-    corner = share[9::18].mean() / share[::18].mean()
+    shares[name] = np.append(count, count[0]) / count.mean()
+    corner = shares[name][9:72:18].mean() / shares[name][:72:18].mean()
     print(f"{name:<29}: towards a corner {corner:.2f} times as often as to a side")
     assert np.isclose(corner, 2 if "cube" in name else 1, atol=0.1)
-axes.set_rticks([0.5, 1.0, 1.5])
-axes.set_title("how often the beetle looks in each direction, 1 = evenly (D = 2)", fontsize=10)
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.05, 1.0))
 print(", ".join(f"D = {d}: {float(d) ** (d / 2):.2g}" for d in (2, 3, 21)))
-plot.finished(figure)
+
+# %% tags=["figure"]
+figure = plot.lines(
+    np.arange(73) * 5.0, shares, "direction the beetle looks in, D = 2 [degrees]", "how often (1: evenly)",
+    places={"corner": 45.0, " corner": 135.0, "corner ": 225.0, " corner ": 315.0}, y_range=(0, None),
+)  # fmt: skip
+figure.axes[0].set_xticks(range(0, 361, 45))
+figure
 
 # %% [markdown]
 # A *greedy* beetle cures the last two. It goes to the better tip if that is better than where it is, and else stays
@@ -303,19 +304,17 @@ plain = partial(bas, start=(-4.2, 3.2), antenna=0.01)
 printed_walk = np.array([points[0] for points in walk_of(partial(plain, rng=5), sphere, 600) if len(points) == 1])
 points = np.concatenate(walk_of(partial(plain, rng=6, greedy=True, decay=None), sphere, 600))
 greedy_walk = points[np.unique(np.minimum.accumulate(sphere(points)), return_index=True)[1][::-1]]
-figure, axes = plot.new_figure(6.4, 4.8)
-grid = np.stack(np.meshgrid(*[np.linspace(-5, 5, 201)] * 2, indexing="ij"), axis=-1)
-height = sphere(grid.reshape(-1, 2)).reshape(201, 201)
-image = axes.contourf(*np.moveaxis(grid, -1, 0), height, 20, cmap="Greys", vmax=90)
-figure.colorbar(image, label="f(x), the bowl")
-axes.plot(*greedy_walk.T, "s--", color=BLUE, markersize=4, label="greedy, following success")
-axes.plot(*printed_walk.T, "o-", color=ORANGE, markersize=3, label="as the clock says (Eq. 6)")
-axes.add_patch(plt.Circle(printed_walk[0], 20 * 0.01 * 10, fill=False, color=ORANGE, linestyle=":"))
-axes.annotate("reach: 20 δ₀", (-4.9, 0.8), color="0.2", fontsize=9)
-axes.plot(0, 0, "*", color=GREEN, markersize=14, markeredgecolor="white", label="least", linestyle="none")
-axes.set(xlabel="x₁", ylabel="x₂", aspect="equal", xlim=(-5, 5), ylim=(-5, 5))
-axes.legend(fontsize=8, loc="lower left")
-plot.finished(figure)
+
+# %% tags=["figure"]
+side, around = np.linspace(-5, 5, 201), np.radians(np.arange(0, 361, 5))
+reach = printed_walk[0] + 20 * 0.01 * 10 * np.stack([np.cos(around), np.sin(around)], axis=1)
+ways = {"greedy, following success": greedy_walk, "as the clock says (Eq. 6)": printed_walk, "its reach: 20 δ₀": reach}
+ends = {"both start": printed_walk[0], "least": (0, 0)}
+figure = plot.heat_map(
+    side, side, side[:, None] ** 2 + side**2, "x₁", "x₂", "f(x), the bowl", equal=True, paths=ways, points=ends
+)
+figure.axes[0].set(xlim=(-5, 1), ylim=(-1, 5))
+figure
 
 # %%
 steps = np.linalg.norm(np.diff(printed_walk, axis=0), axis=1)
@@ -374,19 +373,15 @@ assert all(typical("PSO-BAS printed, on best", f) < typical("PSO, printed (ω = 
 assert typical("PSO-BAS printed, on current", sphere) > typical("PSO, printed (ω = 1)", sphere) / 2
 assert all(typical("PSO-BAS ours, on best", f) < typical("PSO-BAS ours, on current", f) for f in functions)
 
-# %%
-figure, panels = plt.subplots(1, 3, figsize=(11.4, 4.2), dpi=plot.DPI, layout="constrained")
-shown = ("PSO, printed (ω = 1)", "PSO, ours", "BAS, greedy, by success", "PSO-BAS printed, on current")
-shown += ("PSO-BAS printed, on best", "PSO-BAS ours, on best")
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 3, width=11.4, height=4.2)
+names = ["PSO, printed (ω = 1)", "PSO, ours", "BAS, greedy, by success"]
+names += ["PSO-BAS printed, on current", "PSO-BAS printed, on best", "PSO-BAS ours, on best"]
 for axes, (function, least) in zip(panels, {sphere: 1e-14, rosenbrock: 0.1, rastrigin: 1.0}.items(), strict=True):
-    for name, (color, style) in zip(shown, plot.styles(list(shown)), strict=True):
-        line = np.median(tried[name][function], axis=0)
-        axes.semilogy(np.arange(1, 4001), line, color=color, linestyle=style, linewidth=2, label=name)
-    axes.set(xlabel="evaluations made", title=function.__name__, xlim=(0, 4000), ylim=(least, None))
-    axes.grid(alpha=0.3)
-panels[0].set_ylabel("least value found (median of 11 seeds)")
-figure.legend(*panels[0].get_legend_handles_labels(), fontsize=8, loc="outside lower center", ncols=3)
-plot.finished(figure)
+    found = {name: np.median(tried[name][function], axis=0) for name in names}
+    plot.lines(np.arange(1, 4001), found, "evaluations made", "least value found (median of 11 seeds)", log="y",
+               y_range=(least, None), title=function.__name__, colors=COLORS, axes=axes)  # fmt: skip
+figure
 
 # %% [markdown]
 # On the best, the antennae rescue a swarm that can't settle: printed PSO-BAS is far ahead of printed PSO. On the
@@ -433,7 +428,7 @@ assert optimality_gap(refined, optimum) < optimality_gap(swarmed, optimum)
 
 # %%
 named = {"exact optimum": optimum, "best curve of the swarm": swarmed, "after refinement": refined}
-figure = plot.risk(campus, 27.5, named)
+figure = plot.risk(campus, 27.5, named, colors=COLORS)
 for points in arcs[:60]:
     curve = cubic_bspline([optimum.points[0], *points, optimum.points[-1]])
     figure.axes[0].plot(*curve[:, :2].T, color="white", linewidth=0.6, alpha=0.6)
@@ -473,24 +468,16 @@ for some in (asked, alone):
     encodings.append(run(some, campuses[:8], seeds=range(2)))
     print(encodings[-1].table().round(1).drop(columns="seconds"))
 
-# %%
+# %% tags=["figure"]
 gap_of = {name: 100 * gaps for part in encodings for name, gaps in zip(part.planners, part.gaps, strict=True)}
-figure, axes = plot.new_figure(8.4, 4.2)
-for row, gaps in enumerate(gap_of.values()):
-    axes.plot(gaps.ravel(), np.full(gaps.size, row), "|", color="0.6", markersize=9)
-    axes.plot(np.median(gaps), row, "D" if row else "o", color=BLUE if row else ORANGE, markersize=8)
-    axes.annotate(f"{np.median(gaps):.1f}", (np.median(gaps), row), (0, 8), textcoords="offset points", ha="center",
-                  fontsize=8)  # fmt: skip
-axes.plot([], [], "D", color=BLUE, label="median of 16 runs")
-axes.plot([], [], "|", color="0.6", markersize=9, label="a run")
-axes.axvline(0, color="0.4", linewidth=1)
-axes.set_xscale("symlog", linthresh=10)
-axes.set_xticks([-5, 0, 5, 10, 20, 50, 100, 200], ["−5", "0", "5", "10", "20", "50", "100", "200"])
-axes.set_yticks(range(len(gap_of)), gap_of)
-axes.set(xlabel="gap to the exact optimum [%]", ylim=(len(gap_of) - 0.5, -0.8), xlim=(-8, 250))
-axes.grid(alpha=0.3, axis="x")
-axes.legend(fontsize=8, loc="upper right")
-plot.finished(figure)
+figure = plot.runs(
+    {"16 runs": {name: gaps.ravel() for name, gaps in gap_of.items()}},
+    "gap to the exact optimum [%], linear to 10 %, logarithmic beyond", digits=1, places={"exact optimum": 0.0},
+    colors={"16 runs": plot.GREEN},
+)  # fmt: skip
+figure.axes[0].set_xscale("symlog", linthresh=10)
+figure.axes[0].set(xlim=(-8, 900), xticks=(ticks := [-5, 0, 5, 10, 20, 50, 100, 200]), xticklabels=map(str, ticks))
+figure
 
 # %%
 middle = {name: np.median(gaps) for name, gaps in gap_of.items()}
@@ -746,20 +733,14 @@ print("gaps of the refined optimum:", ", ".join(f"{gain:+.1%}" for gain in gains
 assert max(gains) < -0.02
 assert min(gains) > -0.10
 
-# %%
-figure, axes = plot.new_figure(7.6, 3.8)
+# %% tags=["figure"]
 order = np.argsort(np.median(tuned.gaps[0], axis=1))
-for place, number in enumerate(order):
-    axes.plot(np.full(5, place), 100 * tuned.gaps[0, number], "o", color=ORANGE, fillstyle="none")
-axes.plot(100 * np.array(gains)[order], "s", color=BLUE, label="exact optimum, then refined (1 run)")
-axes.plot([], [], "o", color=ORANGE, fillstyle="none", label="PSO-BAS, ours (5 runs)")
-axes.axhline(0, color="0.4", linewidth=1)
-axes.annotate("exact optimum on the grid", (11.4, 0), (0, 3), textcoords="offset points", ha="right", fontsize=8)
-axes.set(xlabel="campus (R: the reference, else the seed)", ylabel="gap to the exact optimum [%]")
-axes.set_xticks(range(12), ["R" if n == 0 else str(n - 1) for n in order])
-axes.grid(alpha=0.3, axis="y")
-axes.legend(fontsize=8, loc="upper left")
-plot.finished(figure)
+names = ["the reference", *(f"seed {seed}" for seed in range(11))]
+both_gaps = {
+    "PSO-BAS, ours": {names[n]: 100 * tuned.gaps[0, n] for n in order},
+    "exact, refined": {names[n]: 100 * gains[n] for n in order},
+}
+plot.runs(both_gaps, "gap to the exact optimum on the grid [%]", places={"exact optimum": 0.0}, colors=COLORS)
 
 # %%
 better = np.mean(tuned.gaps[0] < np.array(gains)[:, None])
@@ -803,18 +784,15 @@ for weight, row in zip(weights, aware, strict=True):
     print(f"w = {weight:<4g} reference: {row[0].length:.1f} / {shortest[0].length:.1f} m ({more:+.1%}), "
           f"risk −{cut:.1%}; 11 random ones: {middle_more:+.1%}, −{middle_cut:.0%} (medians)")  # fmt: skip
 
-# %%
-figure, axes = plot.new_figure(7.2, 4.2)
-for weight, (color, _), marker in zip(weights, plot.styles([f"w = {w:g}" for w in weights]), "os^Dv", strict=False):
-    cuts, mores = 100 * table4[weight].T
-    axes.plot(mores[1:], -cuts[1:], marker, color=color, fillstyle="none", label=f"w = {weight:g}")
-    axes.plot(mores[:1], -cuts[:1], marker, color=color, markersize=10)
-axes.plot(15, -86, "P", color="white", markersize=13, markeredgecolor="black", label="PSO-BAS Table 4")
-axes.plot([], [], "o", color="0.4", markersize=10, label="filled: reference campus")
-axes.set(xlabel="longer than the blind route [%]", ylabel="risk against the blind route [%]", ylim=(-100, 0))
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-plot.finished(figure)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 2, width=10.2, height=4.4)
+parts = {"all": ((None, None), (-100, 0)), "near the paper's claim": ((0, 30), (-96, -72))}
+for axes, (title, (across, up)) in zip(panels, parts.items(), strict=True):
+    groups = {f"w = {w:g}": 100 * np.stack([rows[1:, 1], -rows[1:, 0]], axis=1) for w, rows in table4.items()}
+    groups["reference campus, all w"] = 100 * np.array([(rows[0, 1], -rows[0, 0]) for rows in table4.values()])
+    plot.points(groups, "longer than the blind route [%]", "risk against the blind route [%]", x_range=across,
+                y_range=up, title=title, places={"Table 4: +15 %": 15}, limits={"−86 %": -86}, axes=axes)  # fmt: skip
+figure
 
 # %%
 reached = {w: int(((rows[1:, 0] >= 0.86) & (rows[1:, 1] <= 0.15)).sum()) for w, rows in table4.items()}
@@ -840,13 +818,13 @@ assert 23 < 8.75e-7 / industry < 24.5
 # %%
 refined_optimum = refine(optimum, campus, rng=0)
 shown = {"PSO-BAS, risk and length": aware_route, "PSO-BAS, blind": blind_route, "exact, refined": refined_optimum}
-scene.show(campus.city, shown, risk=campus, uav=campus.uav, colors={"exact, refined": plot.BLACK})
+scene.show(campus.city, shown, risk=campus, uav=campus.uav, colors=COLORS)
 
 # %% [markdown]
 # ## Turn it yourself
 #
-# Number of waypoints, first arcs and optimiser, on the reference campus; 2 000 curves each, seed 4. White lines are the
-# exact optimum.
+# Number of waypoints, first arcs and optimiser, on the reference campus; 2 000 curves each, seed 4. Which of the three
+# matters most?
 
 
 # %%
@@ -855,16 +833,15 @@ def turn(optimizer="pso_bas", waypoints=7, arcs=200, seed=4):
     route = waypoint_swarm(
         campus, start, goal, rng=seed, budget=2000, optimizer=optimizer, waypoints=waypoints, arcs=arcs
     )
-    figure = plot.risk(campus, 27.5, *([route] if route.reached else []))
-    axes = figure.axes[0]
-    axes.plot(*optimum.points[:, :2].T, "--", color="white", linewidth=1.5)
-    axes.plot(*route.info["control"][1:-1, :2].T, "+", color="white", markersize=8, markeredgewidth=2)
+    named = {"exact optimum": optimum} | ({"the swarm's": route} if route.reached else {})
+    figure = plot.risk(campus, 27.5, named, colors=COLORS)
+    control = route.info["control"][1:-1, :2]
+    figure.axes[0].plot(*control.T, "+", color="white", markersize=8, markeredgewidth=2)
     says = f"gap {optimality_gap(route, optimum):+.1%}" if route.reached else route.reason
-    axes.set_title(f"{optimizer}, {waypoints} waypoints, {arcs} arcs: {says}", fontsize=10)
+    title = f"{optimizer}, {waypoints} waypoints, {arcs} arcs: {says}"
+    figure.axes[0].set_title(f"{title}\ncrosses: control points, {len(control)} after refinement", fontsize=10)
     return figure
 
-
-turn()
 
 # %%
 values = {"optimizer": ["pso_bas", "pso", "pso_aco", "bas"], "waypoints": [1, 3, 7, 15], "arcs": [1, 200]}
@@ -890,7 +867,7 @@ print("samples at a quarter of a voxel claim", f"{np.median(claims['1/4 voxel'][
 # %% [markdown]
 # | PSO-BAS | says | we find |
 # |---|---|---|
-# | Table 3: ω | 1 | on the edge: no $c_1$, $c_2$ lets the mean come to rest; distances grow by 14 % a step |
+# | Table 3: ω | 1 | on the edge: no $c_1$, $c_2$ lets the mean come to rest; distances grow by 14 % a step (root mean square; typically 6 %) |
 # | Eq. 16 | no limit of the step, no word on borders | v ≤ a fifth of the range; particles stop at the border |
 # | Eq. 17 | a random direction | prefers corners, by $D^{D/2}$; made no difference that could be seen |
 # | Eq. 18 | $d$ is the distance between the antennae | it is half of it |

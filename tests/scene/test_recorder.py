@@ -163,8 +163,9 @@ def test_the_page_s_camera_sees_as_the_still_s(table1, route):
     assert content.properties["/Cameras/default/rotated/<object>", "fov"] == FIELD_OF_VIEW_DEG
     assert content.motion["camera"] == [12.5, 30.0]
     assert content.motion["margin"] == MARGIN
-    assert {name: tuple(angles) for name, angles in content.motion["cameras"].items()} == DIRECTIONS
     corners, drawing = np.array(content.motion["corners"]), drawing_of(table1, (route,))
+    cameras = {name: tuple(angles) for name, angles in content.motion["cameras"].items()}
+    assert cameras == DIRECTIONS | {"overview": drawing.overview}
     seen = np.concatenate(drawing.seen) - drawing.center
     for direction in np.random.default_rng(0).normal(size=(50, 3)):  # what is outermost in any direction is a corner
         assert (corners @ direction).max() == pytest.approx(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from itertools import cycle
 from typing import NamedTuple
@@ -52,8 +53,9 @@ class Style(NamedTuple):
 def styles(names: Sequence[str], colors: Mapping[str, str] | None = None) -> list[Style]:
     """One colour and line style for each name: what is asked for, or the planner's own, or one that is still free.
 
-    So a planner looks the same in all figures and scenes, and `colors` keeps anything else the same. After seven
-    colours they come again.
+    So a planner looks the same in all figures and scenes, and `colors` keeps anything else the same. A name that begins
+    with a planner's, such as "A* in gusts", has that planner's colour where it is free. After seven colours they come
+    again.
 
     Parameters
     ----------
@@ -92,12 +94,20 @@ def styles(names: Sequence[str], colors: Mapping[str, str] | None = None) -> lis
     if isinstance(names, str) or not isinstance(names, Sequence) or not all(isinstance(name, str) for name in names):
         raise ValueError(f"names must be a list of texts, got {names!r:.60}")
     asked = checked_colors(colors)
-    chosen: list[str | None] = []
-    for name in names:
-        color = asked.get(name, PLANNER_COLORS.get(name))
-        chosen.append(color if name in asked or color not in chosen else None)
+    chosen: list[str | None] = [asked.get(name) for name in names]
+    for wanted in (PLANNER_COLORS.get, color_of_variant):
+        for number, name in enumerate(names):
+            color = wanted(name)
+            if chosen[number] is None and color not in chosen:
+                chosen[number] = color
     free = cycle([color for color in LINES if color not in chosen] or list(LINES))
     return [Style(color, LINES.get(color, "-")) for color in (one or next(free) for one in chosen)]
+
+
+def color_of_variant(name: str) -> str | None:
+    """The colour of the planner whose name another begins with."""
+    begun = [planner for planner in PLANNER_COLORS if re.match(rf"{re.escape(planner)}(?![\w*+-]| \+)", name)]
+    return PLANNER_COLORS[max(begun, key=len)] if begun else None
 
 
 def checked_colors(colors: Mapping[str, str] | None) -> dict[str, str]:

@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from uavlab import checks
 from uavlab.city import City
 from uavlab.planners.potential_field import potential_forces
-from uavlab.plot.colors import SEQUENTIAL, styles
+from uavlab.plot.colors import BLACK, SEQUENTIAL, styles
 from uavlab.plot.ground import (
     LAND_COLOR,
     built_columns,
@@ -27,6 +27,7 @@ from uavlab.plot.ground import (
 )
 from uavlab.plot.style import (
     DPI,
+    SIGNS,
     Drawn,
     add_color_bar,
     area_of,
@@ -197,6 +198,8 @@ def field(
 ) -> Figure:
     """A potential field in a horizontal section: its potential U as colours and lines, arrows along its force −∇U.
 
+    The goal is a triangle; of routes, as in `plan`.
+
     Parameters
     ----------
     city : City
@@ -278,6 +281,10 @@ def field(
     axes.quiver(*points[..., :2].T, *direction[..., :2].T, pivot="mid", angles="xy", scale_units="xy",
                 scale=1.2 / spacing, width=0.005, edgecolor="white", linewidth=0.5)  # fmt: skip
     draw_zones(axes, city, height)
+    x, y, _ = np.asarray(goal, dtype=float)
+    if not planned and west <= x <= east and south <= y <= north:
+        look = SIGNS["goal"] | {"markersize": 9, "markeredgecolor": "white", "linestyle": ""}
+        axes.plot(x, y, color=BLACK, label="goal", zorder=3, **look)
     draw_routes(axes, planned, colors)
     axes.set(xlim=(west, east), ylim=(south, north))
     axes.set_title(title_of(city, height, "buildings black"))

@@ -18,6 +18,7 @@ from uavlab.route import Route
 from uavlab.scene.drawing import Dots, Drawing, Entry, Marker, MarkerKind, Surface
 from uavlab.scene.motion import CALM, MOST_KEYS, along_flight, along_route, mover
 from uavlab.scene.shapes import dashed, thinned, tube
+from uavlab.scene.sight import overview_of
 from uavlab.scene.stage import begun, draw_ground, draw_risk, draw_wind, draw_zones, show_too
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
 from uavlab.weather import Wind
@@ -87,6 +88,7 @@ def drawing_of(
         draw_wind(drawing, city, wind)
     if drawing.movers:
         say_sizes(drawing, uav, safe_distance)
+        drawing.overview = overview_of(city, drawing)
     return drawing
 
 

@@ -15,6 +15,7 @@ from scipy.spatial import ConvexHull, QhullError
 from scipy.spatial.transform import Rotation
 
 from uavlab.plot.colors import Style
+from uavlab.scene.camera import DIRECTIONS
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +139,15 @@ class Drawing:
     unit: Literal["s", "nodes"] = "s"
     wind: np.ndarray = field(default_factory=lambda: np.zeros(2))
     """(2,) where the mean wind blows to, east and north [m/s]."""
+    overview: tuple[float, float] = DIRECTIONS["overview"]
+    """From which side most of the ways is seen: azimuth and elevation [degrees]."""
     seen: list[np.ndarray] = field(default_factory=list)
     """Points (N, 3) [m] that a camera should have in its frame."""
+
+    @property
+    def cameras(self) -> dict[str, tuple[float, float]]:
+        """Azimuth and elevation of the cameras that have a name [degrees]."""
+        return DIRECTIONS | {"overview": self.overview}
 
     def near(self, points: np.ndarray) -> np.ndarray:
         """Points (..., 3) from the centre [m]."""

@@ -180,8 +180,9 @@ def page(
     colors : mapping of str, optional
         Name → colour, for what should look the same elsewhere, as for `uavlab.plot.styles`.
     camera : {"overview", "above", "side", "chase"} or (azimuth, elevation)
-        From where it is seen first; "chase" follows the first UAV. Two numbers are the direction of the eye: from east
-        to north, and height above the horizon [degrees].
+        From where it is seen first. The overview is from the side on which buildings hide least of the routes and
+        flights; "chase" follows the first UAV. Two numbers are the direction of the eye: from east to north, and height
+        above the horizon [degrees].
     start_paused : bool
         Wait for the reader to press play.
     start_at : float

@@ -16,7 +16,7 @@ import numpy as np
 import umsgpack
 from matplotlib.colors import to_hex, to_rgb
 
-from uavlab.scene.camera import CHASE, CLOSEST, DIRECTIONS, FIELD_OF_VIEW_DEG, MARGIN, Camera
+from uavlab.scene.camera import CHASE, CLOSEST, FIELD_OF_VIEW_DEG, MARGIN, Camera
 from uavlab.scene.content import MOST_NAMED
 from uavlab.scene.drawing import Dots, Drawing, Lines, Part, Surface, plain_values
 from uavlab.scene.legend import legend
@@ -166,7 +166,7 @@ def motion_of(drawing: Drawing, camera: Camera, start_paused: bool, start_at: fl
     uav = max((float(np.ptp(mover.body.triangles[..., 0])) for mover in drawing.movers), default=0.0)
     return {
         "movers": movers, "markers": markers, "since": drawing.since, "duration": round(drawing.duration, 3),
-        "unit": drawing.unit, "paused": start_paused, "at": start_at, "camera": camera, "cameras": DIRECTIONS,
+        "unit": drawing.unit, "paused": start_paused, "at": start_at, "camera": camera, "cameras": drawing.cameras,
         "corners": plain_values(drawing.outline(), 2), "margin": MARGIN, "closest": CLOSEST,
         "chase": CHASE, "size": round(size, 3),
         "near": sorted(drawing.near_only), "far": sorted(drawing.far_only), "closeup": round(drawing.closeup, 3),

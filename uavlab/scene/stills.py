@@ -22,7 +22,7 @@ from uavlab.plot.colors import SEQUENTIAL
 from uavlab.plot.maps import RISK_LABEL
 from uavlab.plot.style import DPI, Drawn, finished, plain, titled
 from uavlab.risk import RiskMap
-from uavlab.scene.camera import DIRECTIONS, FIELD_OF_VIEW_DEG, Camera, View, chasing, checked_camera, fitted
+from uavlab.scene.camera import FIELD_OF_VIEW_DEG, Camera, View, chasing, checked_camera, fitted
 from uavlab.scene.content import MOST_NAMED, drawing_of
 from uavlab.scene.drawing import Drawing, Entry
 from uavlab.scene.raster import FINER, Frame
@@ -129,7 +129,7 @@ def view_of(drawing: Drawing, camera: Camera, moment: float, size: float, aspect
         x, y, z, w = turn
         nose = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + z * w)])
         return chasing(drawing.near(place), nose, size)
-    direction = DIRECTIONS[camera] if isinstance(camera, str) else camera
+    direction = drawing.cameras[camera] if isinstance(camera, str) else camera
     return fitted(drawing.outline(), *direction, aspect)
 
 
