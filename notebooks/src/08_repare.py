@@ -37,7 +37,6 @@ from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
 from uavlab.weather import Wind, rain_force
 
 # %%
-BLACK, BLUE, ORANGE, PINK = plot.BLACK, plot.BLUE, plot.ORANGE, plot.PINK
 city = table1_city()
 notch, middle = (90, 18, 30), (50, 44, 30)  # REPARE Fig. 12
 print(f"{city.name}: {city.occupied.sum():,} of {city.occupied.size:,} voxels of 1 m are occupied")
@@ -197,11 +196,11 @@ for way, (axes, title) in enumerate(zip(panels, titles, strict=True)):
 figure
 
 # %% [markdown]
-# *Way 1.* The wall pushes sideways and the UAV flies along: no work. The price along the wall is that of the open, at
-# any distance: free flight along a wall, and only wind from behind makes a difference.
+# *Way 1.* The wall pushes sideways and the UAV flies along: no work. The price along the wall is that far from any wall,
+# at every distance: free flight along a wall, and only wind from behind makes a difference.
 #
 # *Way 2.* At 3.5 m the price falls to 1.12 just when the wind blows *towards* the wall: there push of the wall and
-# push of the wind cancel, and a UAV would rather fly at 3.5 m than at 5 m. Wind *away* from the wall makes it dearer.
+# push of the wind cancel, and a UAV would rather fly at 3.5 m than at 5 m. Wind *away* from the wall makes it more expensive.
 # Both are upside down.
 #
 # *Way 3* rises towards the wall in every wind, and most in the wind that blows towards it.
@@ -281,7 +280,8 @@ print(f"way 1 is cut off at 0 in {np.mean([share for _, share in worked]):.1%} o
 assert expected > 3
 
 # %%
-plot.plan(city, {name: routes[name][0] for name in ("plain A*", "way 3", "way 1")})
+first = {"A*": routes["plain A*"][0], "way 1": routes["way 1"][0], "REPARE, way 3": routes["way 3"][0]}
+scene.show(city, first)
 
 # %% [markdown]
 # Where the wall lies behind the UAV its push helps, the price is cut off at 0, and metres there are free. So way 1
@@ -300,26 +300,25 @@ plot.plan(city, {name: routes[name][0] for name in ("plain A*", "way 3", "way 1"
 
 
 # %%
-def show_buildings(axes, level):
-    """Paint the buildings of a layer of voxels grey, and what has no value white."""
-    axes.set_facecolor("white")
-    plot.draw_map(axes, city, np.where(city.occupied[:, :, level], 1.0, np.nan), "Greys", vmin=0.0, vmax=2.0)
-
-
 mean = (2.0, 0.0, 0.0)
 mild = Wind((6.0, 0.0))
-keep = safe_distance("light", mild) + city.clearance - city.clearance_along(mean, at_most=10.0)
-inside = np.where(city.clearance < keep, keep, np.nan)
+keep = safe_distance("light", mild)
 pair = (2.5, 35.5, 30.5), (60.5, 50.5, 30.5)
 straight, widened = (
     repare(city, *pair, disturbance=mild),
     repare(city, *pair, disturbance=mild, mean_offset=mean),
 )
-both_zones = {"3.5 m all around": straight, "wider towards the wind": widened}
-figure = plot.section(city, 30.5, inside, both_zones, label="D_min in the zone [m]")
-show_buildings(figure.axes[0], 30)
-figure.axes[0].set_title("Zone in wind to the east, mean offset 2 m; 30.5 m above the ground", fontsize=10)
-figure
+
+# %% tags=["figure"]
+wider = city.clearance_along(mean, at_most=10.0)[:, :, 30] < keep
+zones = {"added for the wind": wider, "nearer than 3.5 m": (city.clearance < keep)[:, :, 30]}
+zones["building"] = city.occupied[:, :, 30]
+both_zones = {"route, 3.5 m all around": straight.points[:, :2], "route, wider for the wind": widened.points[:, :2]}
+ZONE_ROUTES = {"route, 3.5 m all around": plot.GREEN, "route, wider for the wind": plot.BLACK}
+ends = {"start": pair[0][:2], "goal": pair[1][:2]}
+plot.area_map(city, zones, paths=both_zones, points=ends, notes={"wind, mean\noffset 2 m →": (12, 62)},
+              title="Zones in wind to the east, 30.5 m above the ground",
+              colors={"added for the wind": plot.SKY, "nearer than 3.5 m": plot.YELLOW} | ZONE_ROUTES)  # fmt: skip
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -595,8 +594,8 @@ scene.show(city, calm, safe_distance=quiet.info["safe_distance"])
 
 # %% [markdown]
 # *Figs 11 to 14*: the same three in gusts, out of the notch. A* flies half a metre from the wall. We push it off its
-# route with drawn offsets, $\sigma = 1$ m on each axis, until it is in a wall: the X of Fig. 11. The potential field
-# is trapped in the notch: the X of Fig. 12. REPARE leaves it.
+# route with drawn offsets, $\sigma = 1$ m on each axis, until it is in a wall: the X of Fig. 11, a square here. The
+# potential field is trapped in the notch: the X of Fig. 12, another square. REPARE leaves it.
 
 
 # %%
@@ -610,7 +609,8 @@ def blown(route, sigma, seed):
         return replace(fine, points=points, planner=f"{route.planner} in gusts")
     end = int(hit.argmax())
     where = "({:.0f}, {:.0f}, {:.0f})".format(*points[end])
-    return Route(points[: end + 1], f"{route.planner} in gusts", reached=False, reason=f"hits a wall at {where}")
+    return Route(points[: end + 1], f"{route.planner} in gusts", reached=False, reason=f"hits a wall at {where}",
+                 info={"goal": route.points[-1]})  # fmt: skip
 
 
 flights = [blown(route, 1.0, 8) for route in (repare(city, notch, middle), astar(city, notch, middle))]
@@ -633,10 +633,19 @@ assert not trapped.reached
 # *Figs 15 to 17*: the three cases of Table 4.
 
 # %%
-scene.show(city, kept, safe_distance=3.5)
+CASE_COLORS = dict(zip(cases, (plot.BLACK, plot.SKY, plot.ORANGE), strict=True))
+scene.show(city, kept, colors=CASE_COLORS)
 
-# %%
-plot.profile(city, kept)
+# %% tags=["figure"]
+figure, (above, along) = plot.new_panels(1, 2, width=11, height=4.4)
+ways = {name: route.points[:, :2] for name, route in kept.items()}
+plot.area_map(city, {"building": city.occupied[:, :, 30]}, paths=ways, points={"start": notch[:2], "goal": middle[:2]},
+              area=(45, 100, 5, 50), colors=CASE_COLORS, axes=above)  # fmt: skip
+metres = np.linspace(12, 44, 321)
+room = {name: np.interp(metres, *route.clearance_profile(city)) for name, route in kept.items()}
+plot.lines(metres, room, "distance flown [m]", "distance to the nearest obstacle [m]", y_range=(0, 12),
+           colors=CASE_COLORS, axes=along, limits={f"{route.info['safe_distance']} m": route.info["safe_distance"] for route in kept.values()})  # fmt: skip
+figure
 
 # %% [markdown]
 # ## In flight: the boundary
@@ -676,10 +685,9 @@ for change in (*check.log, *monitor.log):
 # %% tags=["figure"]
 assert [change.value for change in monitor.log] == ["advanced", "basic"]
 switches = {f"{change.value}\nfrom {change.time:.0f} s": change.time for change in monitor.log}
-gusts = {"rise": (50, 60), "gusts × 3": (60, 110), "fall": (110, 120)}
-plot.lines(clock, {"offset observed": seen, "boundary ξ": boundary}, "time in flight [s]", "offset and boundary [m]",
-           limits={"room: 4 m less\nhalf the body": 3.5}, places=gusts | switches, x_range=(0, 300),
-           y_range=(0, 4.8))  # fmt: skip
+observed = {"offset observed": seen, "boundary ξ": boundary, "σ under the basic controller": gustiness}
+plot.lines(clock, observed, "time in flight [s]", "offset and boundary [m]", places=switches,
+           limits={"room: 4 m less\nhalf the body": 3.5}, x_range=(0, 300), y_range=(0, 4.8))  # fmt: skip
 
 # %% [markdown]
 # The first gusts lift the boundary step by step; at 75 s it no longer fits, and the advanced controller takes over. In
@@ -708,7 +716,8 @@ assert whole["planned for mild"].length < changing.length < whole["planned for h
 assert not grounded.reached
 
 # %%
-scene.show(city, {"REPARE, replanned": changing, **whole}, safe_distance=5.5)
+scene.show(city, {"REPARE, replanned": changing, **whole}, safe_distance=5.5,
+           colors={"planned for mild": plot.BLACK, "planned for heavy": plot.ORANGE})  # fmt: skip
 
 # %% [markdown]
 # ## What should a metre cost?
@@ -736,14 +745,14 @@ occupied[:2] = True
 wall = City(occupied)
 away = np.linspace(0.5, 12, 400)
 curves, steps, colors = {}, {}, {}
-for (name, case), color in zip(cases.items(), (plot.BLUE, plot.BLACK, plot.ORANGE), strict=True):
+for name, case in cases.items():
     now = flight_conditions(*case)
     sigma = (now.safe_distance - 0.5) / 3
     hazard, zone = f"price by hazard, σ = {sigma:.2f} m", f"price of REPARE, {name}"
     curves[hazard] = 3000 / 5 * offsets.crossing_rate(away - 0.5, sigma)
     centre, extra = wall.clearance[2:, 1, 1], repare_price(wall, now)[2:, 1, 1] - 1
     steps[zone] = np.column_stack([centre, extra])[extra > 0]
-    colors |= {hazard: color, zone: color}
+    colors |= {hazard: CASE_COLORS[name], zone: CASE_COLORS[name]}
 plot.lines(away, curves, "distance to the wall [m]", "price of a metre, above 1", points=steps, log="y", colors=colors,
            x_range=(0, 10), y_range=(1e-3, 1e3))  # fmt: skip
 
@@ -754,7 +763,7 @@ plot.lines(away, curves, "distance to the wall [m]", "price of a metre, above 1"
 #
 # ### The comparison
 #
-# Sixty blocked pairs, Table 4's three cases, $3\sigma = D_\text{min} - r$. REPARE, the hazard planner with any angle,
+# Sixty blocked pairs, Table 4's three cases, $3\sigma = D_\text{min} - r$. REPARE, hazard A* with any angle,
 # and, to be fair, two more: REPARE with any angle, and the same with a zone 1 m wider. The last column is for gusts
 # 1.5 times as strong as everybody assumed.
 
@@ -772,7 +781,7 @@ for name, (load, disturbance) in cases.items():
         "REPARE": lattice,
         "REPARE, any angle": [shortcut(route, city, price=step) for route in lattice],
         "the same, zone 1 m wider": [shortcut(astar(city, *pair, price=wide), city, price=wide) for pair in sixty],
-        "hazard, any angle": [hazard_astar(city, *pair, sigma=(keep - 0.5) / 3) for pair in sixty],
+        "hazard A*, any angle": [hazard_astar(city, *pair, sigma=(keep - 0.5) / 3) for pair in sixty],
     }
 print(len(sixty), "pairs")
 
@@ -791,9 +800,9 @@ for name, by_planner in results.items():
         print("  {:<25}{:.3f} [{:.3f}, {:.3f}]".format(planner, *share),
               f"{min(least):10.1f} m, {np.median(least):.1f} m {expected[0]:21.1f} {expected[1]:18.0f}")  # fmt: skip
 for name in results:
-    assert found[name, "hazard, any angle"][0] < found[name, "REPARE"][0] - 0.03
-    assert found[name, "hazard, any angle"][1] < found[name, "REPARE"][1] / 20
-    assert found[name, "hazard, any angle"][2] < found[name, "REPARE"][2] / 5
+    assert found[name, "hazard A*, any angle"][0] < found[name, "REPARE"][0] - 0.03
+    assert found[name, "hazard A*, any angle"][1] < found[name, "REPARE"][1] / 20
+    assert found[name, "hazard A*, any angle"][2] < found[name, "REPARE"][2] / 5
 
 # %% [markdown]
 # The hazard routes are 4 to 6 % shorter than REPARE's and touched less often by a factor of 20 and more. But look at
@@ -810,7 +819,7 @@ for name in results:
 
 # %%
 name = "light load, heavy disturbance"
-both = "REPARE", "hazard, any angle"
+both = "REPARE", "hazard A*, any angle"
 pairs_of_routes = list(zip(*(results[name][planner] for planner in both), strict=True))
 most = max(range(len(sixty)), key=lambda i: pairs_of_routes[i][0].length - pairs_of_routes[i][1].length)
 compared_routes = dict(zip(both, pairs_of_routes[most], strict=True))
@@ -819,8 +828,9 @@ plot.profile(city, astar(city, *sixty[most]), compared_routes, safe_distance=5.5
 # %% [markdown]
 # ## Turn it yourself
 #
-# Disturbance, load and $\omega_0$. The map shows the zone 30.5 m above the ground, the title its $D_\text{min}$, the
-# line the way out of the notch.
+# Disturbance, load and $\omega_0$. The map shows the zone 30.5 m above the ground (white: outside of it, a metre costs
+# a metre), the title its $D_\text{min}$, the line the way out of the notch. Which settings leave the UAV on the ground?
+# And what is left of the distance when $\omega_0$ falls to 0.1, and to 0?
 
 
 # %%
@@ -831,19 +841,18 @@ def turn(disturbance="mild", load="light", omega=2.0):
     route = repare(city, notch, middle, load=load, disturbance=disturbance, penalty=omega)
     shown = [route] if route.reached else []
     figure = plot.section(city, 30.5, zone, *shown, label="price of a metre in the zone", norm=LogNorm(1, 1000))
-    show_buildings(figure.axes[0], 30)
+    figure.axes[0].set_facecolor("white")  # free air outside of the zone costs 1
+    plot.draw_map(figure.axes[0], city, np.where(city.occupied[:, :, 30], 0.0, np.nan), "gray")
     text = f"D_min = {now.safe_distance} m, resilience {resilience_level(load, disturbance)}"
     text += f", keeps {route.clearance(city):.1f} m" if route.reached else f"\n{route.reason}"
     figure.axes[0].set_title(text, fontsize=10)
     return figure
 
 
-turn()
-
 # %%
-cases = {"disturbance": list(DISTURBANCES), "load": list(LOADS), "omega": [0.0, 0.05, 0.1, 2.0]}
+turned = {"disturbance": list(DISTURBANCES), "load": ["light", "moderate", "heavy"], "omega": [0.0, 0.1, 2.0]}
 start = {"disturbance": "mild", "load": "light", "omega": 2.0}
-plot.sliders(turn, title="REPARE and its zone", labels={"omega": "ω₀"}, start=start, progress=False, **cases)
+plot.sliders(turn, title="REPARE and its zone", labels={"omega": "ω₀"}, start=start, progress=False, **turned)
 
 # %% [markdown]
 # ## What the paper says, what we find

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from uavlab import checks
 from uavlab.plot.colors import LineStyle, Style
-from uavlab.plot.frames import checked_frame, framed
+from uavlab.plot.frames import Frame, checked_frame, framed
 from uavlab.plot.panels import (
     MARKERS,
     by_few_names,
@@ -144,7 +144,7 @@ def lines(
     for name, (low, high) in ranges.items():
         axes.fill_between(x, low, high, color=styles[name].color, alpha=0.22, linewidth=0, zorder=1,
                           step="mid" if steps else None, label=None if name in drawn else plain(name))  # fmt: skip
-    for (name, y), (width, line) in zip(drawn.items(), told_apart(drawn, styles, "y" in log), strict=True):
+    for (name, y), (width, line) in zip(drawn.items(), told_apart(drawn, styles, frame), strict=True):
         axes.plot(x, y, color=styles[name].color, linestyle=line, linewidth=width, drawstyle=form, label=plain(name),
                   alpha=0.5 if width > WIDTH else 1.0)  # fmt: skip
     draw_points(axes, marks, styles, drawn)
@@ -245,11 +245,13 @@ def draw_points(
 
 
 def told_apart(
-    drawn: Mapping[str, np.ndarray], styles: Mapping[str, Style], logarithmic: bool
+    drawn: Mapping[str, np.ndarray], styles: Mapping[str, Style], frame: Frame
 ) -> list[tuple[float, LineStyle]]:
     """Width and line style of each: where later lines lie on an earlier one, that is wider and they are dashed."""
+    least, most = (end if given is None else given for given, end in zip(frame.ends[1], (-np.inf, np.inf), strict=True))
     with np.errstate(invalid="ignore", divide="ignore"):
-        heights = [np.log(np.where(y > 0, y, np.nan)) if logarithmic else y for y in drawn.values()]
+        shown = [np.where((y >= least) & (y <= most), y, np.nan) for y in drawn.values()]
+        heights = [np.log(np.where(y > 0, y, np.nan)) if "y" in frame.log else y for y in shown]
     every = np.concatenate([np.empty(0), *heights])
     every = every[np.isfinite(every)]
     reach = TOGETHER * np.ptp(every) if len(every) else 0.0
