@@ -72,6 +72,29 @@ def test_field_points_along_the_force_and_colours_the_potential(table1):
     assert figure.legends[0].get_texts()[0].get_text() == "potential field: not reached"
 
 
+def test_field_marks_a_goal_that_no_route_marks(table1):
+    goal = (50, 44, 30)
+    marks = {}
+    for area in (None, (66, 96, 12, 40)):
+        axes = plot.field(table1, 30, goal, area=area, spacing=5.0).axes[0]
+        marks[area] = [line.get_xydata().tolist() for line in axes.lines if line.get_label() == "goal"]
+    assert list(marks.values()) == [[[[50, 44]]], []]  # in the second it lies outside
+    with_route = plot.field(table1, 30, goal, astar(table1, (90, 18, 30), goal), spacing=5.0)
+    assert [text.get_text() for text in with_route.legends[0].get_texts()].count("goal") == 1
+
+
+@pytest.mark.parametrize(("shape", "height"), [((50, 50, 3), 5.4), ((100, 10, 3), 3.6), ((10, 100, 3), 8.0)])
+def test_a_map_s_figure_has_its_shape(shape, height):
+    city = City(np.zeros(shape, bool))
+    for figure in (
+        plot.plan(city),
+        plot.section(city, 1.0),
+        plot.value_map(city, np.zeros(shape[:2]), "height [m]"),
+        plot.area_map(city, {"built": np.zeros(shape[:2], bool)}),
+    ):
+        assert figure.get_size_inches() == pytest.approx((6.4, height))
+
+
 def test_field_refuses_what_it_can_t_draw(table1):
     with pytest.raises(ValueError, match="height must lie on the map, 0 to 100 m, got 120"):
         plot.field(table1, 120, (50, 44, 30))

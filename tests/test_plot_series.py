@@ -64,6 +64,15 @@ def test_tails_near_zero_are_not_lines_on_each_other():
     assert {line_of(axes, name).get_linewidth() for name in "ab"} == {WIDTH}
 
 
+def test_what_lies_outside_of_the_axis_tells_no_lines_apart():
+    x = np.linspace(0, 12, 200)
+    tails = {"a": np.exp(-(x**2)), "b": 4 * np.exp(-(x**2))}  # a hundredth of 60 decades is more than their distance
+    axes = plot.lines(x, tails, "x [m]", "y [1/m]", log="y", y_range=(1e-3, 10)).axes[0]
+    assert {line_of(axes, name).get_linewidth() for name in "ab"} == {WIDTH}
+    everything = plot.lines(x, tails, "x [m]", "y [1/m]", log="y").axes[0]
+    assert line_of(everything, "a").get_linewidth() > WIDTH
+
+
 def test_on_a_logarithmic_axis_lines_lie_apart_by_their_ratio():
     shown = {
         "a": np.geomspace(1, 1e6, len(X)),

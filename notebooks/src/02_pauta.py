@@ -215,8 +215,6 @@ def turn(sigma=1.0, dimensions=2):
                       colors={"beyond 3σ": ORANGE})  # fmt: skip
 
 
-turn()
-
 # %%
 labels, values = (
     {"sigma": "σ [m]", "dimensions": "dimensions"},

@@ -850,9 +850,9 @@ def turn(disturbance="mild", load="light", omega=2.0):
 
 
 # %%
-turned = {"disturbance": list(DISTURBANCES), "load": ["light", "moderate", "heavy"], "omega": [0.0, 0.1, 2.0]}
+settings = {"disturbance": list(DISTURBANCES), "load": ["light", "moderate", "heavy"], "omega": [0.0, 0.1, 2.0]}
 start = {"disturbance": "mild", "load": "light", "omega": 2.0}
-plot.sliders(turn, title="REPARE and its zone", labels={"omega": "ω₀"}, start=start, progress=False, **turned)
+plot.sliders(turn, title="REPARE and its zone", labels={"omega": "ω₀"}, start=start, progress=False, **settings)
 
 # %% [markdown]
 # ## What the paper says, what we find

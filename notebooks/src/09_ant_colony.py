@@ -25,7 +25,6 @@ import math
 from dataclasses import replace
 from functools import partial
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
 from scipy import stats
@@ -37,7 +36,11 @@ from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 from uavlab.sweep import sweep
 
 # %%
-BLUE, GREEN, ORANGE = plot.BLUE, plot.GREEN, plot.ORANGE
+COLORS = {"exact optimum": plot.BLACK, "printed": plot.BLUE, "ours": plot.ORANGE, "ours, 3 splits": plot.GREEN}
+COLORS |= {"printed: Q/L, blind": plot.BLUE, "printed, for risk": plot.BLUE, "printed, for length": plot.SKY}
+COLORS |= {"ours: sees the price": plot.ORANGE, "ours, for risk": plot.ORANGE, "ours, for risk and length": plot.GREEN}
+COLORS |= {"β = 80": plot.BLUE, "β = 12, γ = 2": plot.ORANGE, "β = 12": plot.YELLOW, "ours, blind: γ = 0": plot.SKY}
+COLORS |= {"split": plot.GREEN, "as many ants, no split": plot.PINK}
 start, goal = CAMPUS_FLIGHT
 campus = reference_campus()
 exact = least_risk(campus, start, goal)
@@ -92,25 +95,24 @@ def step_odds(at, came, visited, alpha=1.0, beta=2.0, tau=1.0):
 
 # %%
 # NBVAL_CHECK_OUTPUT
-figure, panels = plt.subplots(1, 3, figsize=(10.6, 3.7), dpi=plot.DPI, layout="constrained", sharey=True)
-for axes, beta in zip(panels, (2, 12, 80), strict=True):
-    plot.draw_map(axes, yard.city, np.where(occupied[:, :, 0], 1.0, np.nan), "Greys", vmin=0, vmax=1.2)
-    axes.set(xticks=range(0, 71, 10), yticks=range(0, 51, 10), title=f"β = {beta}")
-    axes.grid(color="0.8")
-    (a, b), odds = door, step_odds(door, None, {door}, beta=beta)
-    for (i, j), p in odds.items():
-        axes.annotate("", (10 * i + 5, 10 * j + 5), (10 * a + 5, 10 * b + 5),
-                      arrowprops={"arrowstyle": "-|>", "color": ORANGE, "linewidth": 0.6 + 6 * p})  # fmt: skip
-        axes.text(10 * i + 5, 10 * j + (7 if j >= b else 0.8), f"{p:.1%}", ha="center", fontsize=8)
-    axes.plot(5, 25, "o", color=BLUE, markersize=11, label="ant")
-    axes.plot(65, 25, "^", color=GREEN, markersize=11, label="goal")
+for beta in (2, 12, 80):
+    odds = step_odds(door, None, {door}, beta=beta)
     print(f"β = {beta}:", *(f"{to} {p:.3f}" for to, p in sorted(odds.items())))
     assert math.isclose(sum(odds.values()), 1.0)
-panels[0].legend(fontsize=8, loc="lower right")
-plot.finished(figure)
+
+# %% tags=["figure"]
+figure, panels = plot.new_panels(1, 3, share="y", width=10.6, height=3.7)
+for axes, beta in zip(panels, (2, 12, 80), strict=True):
+    plot.area_map(yard.city, {"building": occupied[:, :, 0]}, points={"ant": (5, 25), "goal": (65, 25)},
+                  title=f"β = {beta}", colors={"ant": plot.ORANGE}, axes=axes)  # fmt: skip
+    for (i, j), p in step_odds(door, None, {door}, beta=beta).items():
+        axes.annotate("", (10 * i + 5, 10 * j + 5), (5, 25),
+                      arrowprops={"arrowstyle": "-|>", "color": plot.ORANGE, "linewidth": 0.6 + 6 * p})  # fmt: skip
+        axes.text(10 * i + 5, 10 * j + (7 if j >= 2 else 0.8), f"{p:.1%}", ha="center", fontsize=8)
+figure
 
 # %% [markdown]
-# (Black is a building.) The larger β, the more does the ant go straight at the goal; at 80 it has hardly a choice. An
+# The larger β, the more does the ant go straight at the goal; at 80 it has hardly a choice. An
 # ant is nothing but this step, repeated. On so small a map we can write down **all** ways it may take, and the
 # probability of each: the product of its steps'. Dead ends, where no neighbour is left, are ways too.
 
@@ -231,44 +233,47 @@ for name, route in colonies.items():
     print(f"{name}: {north[name]:.0%} of the scent passes in the north; keeps {route.length:.0f} m, {route.cost:.2e}")
 print(f"exact optimum: {best.length:.0f} m, {best.cost:.2e}")
 
+# %% tags=["figure"]
+plot.risk(block, 5.0, {"exact optimum": best} | colonies, colors=COLORS)
 
-# %%
-def scent(axes, tau, title):
-    """Pheromone (20, 12) on the plan of the block, from above."""
-    image = plot.draw_map(axes, block.city, np.where(occupied[:, :, 0], np.nan, tau), plot.SEQUENTIAL,
-                          norm=LogNorm(0.05, 15, clip=True))  # fmt: skip
-    axes.set_facecolor("black")
-    for place, marker in zip(across, "o^", strict=True):
-        axes.plot(*place[:2], marker, color=ORANGE, markersize=8, markeredgecolor="white")
-    axes.set_title(title, fontsize=9)
-    return image
+# %% [markdown]
+# Dark squares are those where a fall hurts few. The scent that made these routes, ten ants at a time: which colony
+# will still have some of it on both sides after 400 ants?
 
 
 # %%
+SCENT = LogNorm(0.05, 15, clip=True)
+
+
+def show_scent(route, generation, title, axes):
+    """Pheromone of a colony after some generations, on the plan of the block, with the exact route."""
+    tau = np.where(occupied[:, :, 0], np.nan, route.info["pheromone"][generation][:, :, 0])
+    ends = {"start": across[0][:2], "goal": across[1][:2]}
+    plot.value_map(block.city, tau, "pheromone τ", paths={"exact optimum": best.points[:, :2]}, points=ends,
+                   norm=SCENT, title=title, colors=COLORS, axes=axes)  # fmt: skip
+
+
 def show_generation(generation):
     """The scent of both colonies after some generations."""
-    figure, panels = plt.subplots(1, 2, figsize=(7.6, 2.6), dpi=plot.DPI, layout="constrained", sharey=True)
+    figure, panels = plot.new_panels(1, 2, share="y", width=8.6, height=3.2)
     for axes, (name, route) in zip(panels, colonies.items(), strict=True):
-        image = scent(axes, route.info["pheromone"][generation][:, :, 0], f"{name}, after {10 * generation} ants")
-    figure.colorbar(image, ax=panels, label="pheromone τ", shrink=0.8)
-    return plot.finished(figure)
+        show_scent(route, generation, f"{name}, after {10 * generation} ants", axes)
+    return figure
 
 
 generations = [*range(10), *range(10, 41, 6)]
-plot.sliders(show_generation, title="scent of two colonies", progress=False, generation=generations)
+plot.sliders(show_generation, title="scent of two colonies", start={"generation": 10}, progress=False,
+             generation=generations)  # fmt: skip
 
 # %% [markdown]
 # (Move the slider to let ten ants at a time leave their scent.) Some of these pictures beside each other:
 
-# %%
-figure, panels = plt.subplots(2, 5, figsize=(11.4, 3.6), dpi=plot.DPI, layout="constrained", sharex=True, sharey=True)
-for row, (name, route) in zip(panels, colonies.items(), strict=True):
-    for axes, generation in zip(row, (0, 1, 3, 10, 40), strict=True):
-        image = scent(axes, route.info["pheromone"][generation][:, :, 0], f"after {10 * generation} ants")
-        axes.label_outer()
-    row[0].set_ylabel(f"{name}\n\ny, north [m]", fontsize=9)
-figure.colorbar(image, ax=panels, label="pheromone τ", shrink=0.8)
-plot.finished(figure)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(2, 5, share="xy", width=12.0, height=3.8)
+cases = itertools.product(colonies.items(), (0, 1, 3, 10, 40))
+for axes, ((name, route), generation) in zip(panels, cases, strict=True):
+    show_scent(route, generation, f"{name.split(':')[0]}, after {10 * generation} ants", axes)
+figure
 
 # %% [markdown]
 # Above, blind ants make the short way over the crowd their road. One took a southern way in the first generation, by
@@ -323,7 +328,7 @@ texts = "probability of the likeliest step", "effective number of choices exp H"
 for axes, column, text in zip(panels, (1, 2), texts, strict=True):
     common = looks["β = 80"][:, 0]
     odds = {name: np.interp(common, along[::-1, 0], along[::-1, column]) for name, along in looks.items()}
-    plot.lines(common, odds, "distance to the goal [cells]", text, axes=axes)
+    plot.lines(common, odds, "distance to the goal [cells]", text, colors=COLORS, axes=axes)
     axes.set_xlim(28, 0)
 figure
 
@@ -404,7 +409,7 @@ assert np.median(last["printed"]) <= 3 < 40 < np.median(last["ours"])
 
 # %% tags=["figure"]
 plot.lines(range(1, 51), ways, "generation", "different ways of 10 ants, mean", bands=quartiles, band_label="quartiles",
-           x_range=(1, 50), y_range=(0, 10.3))  # fmt: skip
+           colors=COLORS, x_range=(1, 50), y_range=(0, 10.3))  # fmt: skip
 
 # %% [markdown]
 # In the first generation the printed ants walk eight or nine different ways. In the tenth it is two, in the last one:
@@ -469,7 +474,7 @@ plot.runs({"an ant colony": found}, "risk above the exact optimum [%]", log=True
 
 # %%
 arrays = {name: getattr(comparison, name)[:6] for name in ("planners", "gaps", "histories", "iterations", "elapsed")}
-plot.convergence(replace(comparison, **arrays), until=2000)
+plot.convergence(replace(comparison, **arrays), until=2000, colors=COLORS)
 
 # %% [markdown]
 # ## Splitting the route
@@ -520,7 +525,8 @@ for axes, name, run in zip(panels, ("printed", "ours"), runs, strict=True):
     }
     bands = {label: (low, high) for label, (low, _, high) in quartiles.items()}
     plot.lines(SPLITS, {label: middle for label, (_, middle, _) in quartiles.items()}, "splits (each with 500 ants more)",
-               "gap to the exact optimum [%], median", bands=bands, band_label="quartiles", title=name, axes=axes)  # fmt: skip
+               "gap to the exact optimum [%], median", bands=bands, band_label="quartiles", title=name, colors=COLORS,
+               axes=axes)  # fmt: skip
 figure
 
 # %%
@@ -634,19 +640,14 @@ marked = []
 for name, setting in aims.items():
     route = ant_colony(campus, start, goal, rng=0, **setting)
     marked.append(replace(route, planner=name, cost=campus.integral(route)))
-plot.front(front, *marked)
+plot.front(front, *marked, colors=COLORS)
 
 # %% [markdown]
-# Nobody comes below the exact front. The printed ants stay on the short, risky side of it. In space:
+# Nobody comes below the exact front. The printed ants stay on the short, risky side of it. In 3D:
 
 # %%
-scene.show(
-    campus.city,
-    {"exact optimum": exact, "printed, for risk": marked[1], "ours": marked[2]},
-    risk=campus,
-    uav=campus.uav,
-    colors={"exact optimum": plot.BLACK},
-)
+shown = {"exact optimum": exact, "printed, for risk": marked[1], "ours, for risk": marked[2]}
+scene.show(campus.city, shown, risk=campus, uav=campus.uav, colors=COLORS)
 
 # %% [markdown]
 # The printed ants fly straight over the crowds (yellow), as their visibility tells them. Ours go round in the east,
@@ -656,7 +657,8 @@ scene.show(
 # %% [markdown]
 # ## Turn it yourself
 #
-# How greedy, how sharp-eyed, how forgetful should ants be? 1 000 of them, seed 0, on the reference campus.
+# How greedy, how sharp-eyed, how forgetful should ants be? 1 000 of them, seed 0, on the reference campus. Which habit
+# hurts most when it goes to its end?
 
 
 # %%
@@ -665,10 +667,8 @@ def turn(beta=12.0, gamma=2.0, evaporation=0.1):
     route = ant_colony(campus, start, goal, rng=0, budget=1000, beta=beta, gamma=gamma, evaporation=evaporation)
     gap = f"gap {optimality_gap(route, exact):.0%}" if route.reached else "none arrived"
     name = f"β = {beta:g}, γ = {gamma:g}, ρ = {evaporation:g}: {gap}"
-    return plot.risk(campus, 27.5, {name: route, "exact optimum": exact}, colors={"exact optimum": plot.BLACK})
+    return plot.risk(campus, 27.5, {name: route, "exact optimum": exact}, colors=COLORS | {name: plot.ORANGE})
 
-
-turn()
 
 # %%
 habits = {"beta": [0, 4, 12, 40], "gamma": [0, 1, 2, 5], "evaporation": [0.02, 0.1, 0.5]}

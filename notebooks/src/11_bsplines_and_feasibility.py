@@ -539,8 +539,6 @@ def turn(curve="exact route", speed=5.0, bank_deg=30.0):
     return figure
 
 
-turn()
-
 # %%
 values, first = {"curve": list(shown), "speed": [2, 4, 5, 6, 8]}, {"speed": 5}
 plot.sliders(turn, title="curvature and pitch", labels={"speed": "speed [m/s]"}, start=first, progress=False, **values)

@@ -36,6 +36,7 @@ from uavlab.plot.style import (
     drawn_routes,
     finished,
     level_of,
+    map_size,
     new_figure,
     plain,
     titled,
@@ -85,7 +86,7 @@ def plan(city: City, *routes: Drawn, colors: Mapping[str, str] | None = None) ->
     'A*, 66.4 m'
     """
     planned = drawn_routes(city, routes)
-    figure, axes = new_figure(6.4, 5.4)
+    figure, axes = new_figure(*map_size(area_of(city, None)))
     tops = np.where(city.occupied, (np.arange(city.shape[2]) + 1) * city.cell, 0).max(axis=2)
     if city.ground is not None:
         tops = np.where(built_columns(city), np.maximum(city.origin[2] + tops - city.ground, 0.0), 0.0)
@@ -163,7 +164,7 @@ def section(
     checks.text("label", label)
     if norm is not None:
         checks.instance("norm", norm, Normalize)
-    figure, axes = new_figure(6.4, 5.4)
+    figure, axes = new_figure(*map_size(area_of(city, None)))
     image = draw_map(axes, city, np.where(city.occupied[:, :, k], np.nan, layer), SEQUENTIAL, norm=norm)
     add_color_bar(figure, axes, image, label)
     axes.set_facecolor("black")
@@ -268,7 +269,7 @@ def field(
     points, _, potential = sampled(max(east - west, north - south) / 200)
     if not np.isfinite(potential).any():
         raise ValueError(f"area must have a free point {height:g} m high, to have a field there")
-    figure, axes = new_figure(6.4, 5.4)
+    figure, axes = new_figure(*map_size((west, east, south, north)))
     draw_map(axes, city, np.where(city.occupied[:, :, k], 1.0, np.nan), "gray_r", vmin=0, vmax=1)
     draw_cut(axes, city, k)
     levels = MaxNLocator(20).tick_values(np.nanmin(potential), np.nanquantile(potential, 0.93))  # walls rise out of it

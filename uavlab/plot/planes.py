@@ -19,7 +19,7 @@ from uavlab.plot.frames import Frame, checked_frame, framed
 from uavlab.plot.frames import label as checked_label
 from uavlab.plot.panels import by_few_names, explain, figure_of, finite_or_gaps, panel, rows_of_points, styles_on
 from uavlab.plot.series import draw_points
-from uavlab.plot.style import add_color_bar, area_of, draw_map, plain, with_gaps
+from uavlab.plot.style import add_color_bar, area_of, draw_map, map_size, plain, with_gaps
 
 HALO = [matplotlib.patheffects.Stroke(linewidth=4.0, foreground="white"), matplotlib.patheffects.Normal()]
 """About lines on colours."""
@@ -194,7 +194,7 @@ def value_map(
     if norm is not None:
         checks.instance("norm", norm, Normalize)
     lines, marks, frame, window = checked_map(city, paths, points, notes, area, title, colors)
-    axes = panel(axes, 6.4, 5.6)
+    axes = panel(axes, *map_size(window))
     axes.set_facecolor("black")
     image = draw_map(axes, city, shown, SEQUENTIAL, norm=norm)
     add_color_bar(figure_of(axes), axes, image, plain(label))
@@ -269,7 +269,7 @@ def area_map(
     fields = {name: checked_mask(f"areas[{name!r}]", mask, city.shape[:2])
               for name, mask in by_few_names("areas", areas, least=1).items()}  # fmt: skip
     lines, marks, frame, window = checked_map(city, paths, points, notes, area, title, colors)
-    axes = panel(axes, 6.4, 5.6)
+    axes = panel(axes, *map_size(window))
     asked = MAP_COLORS | frame.colors
     styles = styles_on(axes, list(dict.fromkeys(["building", *fields, *lines, *marks])), asked)
     for name, field in fields.items():

@@ -22,6 +22,8 @@ from uavlab.risk import RiskMap
 from uavlab.route import Route, Way, as_route
 
 DPI = 100
+MAP_WIDTH = 6.4
+"""Of a figure with a map and its colour bar [inches]."""
 MOST_INCHES = 650
 """Along a side of a figure; matplotlib can't save larger ones in this resolution."""
 
@@ -48,6 +50,12 @@ def area_of(city: City, area: tuple[float, float, float, float] | None) -> tuple
         map_words = f"{left:g} to {right:g} m east, {lowest:g} to {highest:g} m north"
         raise ValueError(f"area must lie on the map, {map_words}, got {area!r:.60}")
     return west, east, south, north
+
+
+def map_size(window: tuple[float, float, float, float]) -> tuple[float, float]:
+    """Width and height [inches] of a figure with a map of this part, so that a long one leaves no empty frame."""
+    west, east, south, north = window
+    return MAP_WIDTH, float(np.clip(1.2 + (MAP_WIDTH - 2.2) * (north - south) / (east - west), 3.6, 8.0))
 
 
 def with_gaps(values: npt.ArrayLike) -> np.ndarray:
