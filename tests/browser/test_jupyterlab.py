@@ -15,17 +15,25 @@ from pictures import share_of_hue
 from uavlab.city import table1_city
 
 NOTEBOOK = Path(__file__).parents[2] / "notebooks" / "00_start_here.ipynb"
+SLIDERS = """\
+from uavlab import plot
+
+def draw(wind):
+    return plot.lines([0, 1, 2], {"offset": [0, wind, 2 * wind]}, "time [s]", "offset [m]", y_range=(0, 20))
+
+plot.sliders(draw, wind=[0, 3, 6, 9], labels={"wind": "wind [m/s]"}, progress=False)"""
 
 
 @pytest.fixture
 def course(tmp_path):
-    """A folder with the notebook as it is before it was run."""
+    """A folder with the notebook as it is before it was run, and sliders as its last cell."""
     folder = tmp_path / "course"
     folder.mkdir()
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     for cell in notebook.cells:
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
+    notebook.cells.append(nbformat.v4.new_code_cell(SLIDERS))
     nbformat.write(notebook, folder / NOTEBOOK.name)
     return folder
 
@@ -83,7 +91,7 @@ def test_run_all_runs_every_cell_and_draws_the_scene(browser, lab, course, pictu
         if cells and all(cell["execution_count"] for cell in cells):
             break
     code = [cell for cell in nbformat.read(NOTEBOOK, as_version=4).cells if cell.cell_type == "code"]
-    assert [cell["execution_count"] for cell in cells] == list(range(1, len(code) + 1))
+    assert [cell["execution_count"] for cell in cells] == list(range(1, len(code) + 2))
     assert not [output for cell in cells for output in cell["outputs"] if output["output_type"] == "error"]
     frame = page.locator(".uavlab-scene iframe").first
     frame.scroll_into_view_if_needed()
@@ -93,4 +101,14 @@ def test_run_all_runs_every_cell_and_draws_the_scene(browser, lab, course, pictu
     for building in table1_city().buildings[:3]:
         assert share_of_hue(picture, building.color) > 0.003, building.name
     picture_of(page, "-lab")
+
+    sliders = page.locator(".uavlab-sliders")
+    sliders.scroll_into_view_if_needed()
+    cell = page.locator(".jp-Notebook-cell", has=sliders)
+    for key, frame in (("End", 3), ("ArrowLeft", 2), ("Home", 0)):
+        sliders.get_by_role("slider", name="wind").press(key)
+        sliders.locator(f'canvas[data-frame="{frame}"]').wait_for(timeout=10_000)
+        assert sliders.locator("output").inner_text() == f"{3 * frame} m/s"
+    assert cell.locator("canvas").get_attribute("aria-label").endswith("wind 0 m/s")
+    picture_of(page, "-lab-sliders")
     page.close()
