@@ -14,6 +14,7 @@ from uavlab.city import City, table1_city
 from uavlab.flight import OffsetProcess, fly
 from uavlab.planners import astar, repare
 from uavlab.route import Route
+from uavlab.scene.camera import axes_of
 from uavlab.scene.content import drawing_of
 from uavlab.scene.stills import HEIGHT, WIDTH, chase_size, view_of
 from uavlab.vehicle import LIGHT_QUADROTOR
@@ -121,7 +122,7 @@ def test_the_clock_runs_at_the_speed_that_is_chosen(opened, city, flights):
     assert 0.8 < shown[1] < 3.5
 
 
-@pytest.mark.parametrize("camera", ["overview", "above", "side", "chase", (30.0, 20.0)])
+@pytest.mark.parametrize("camera", ["overview", "above", "side", "chase", (30.0, 20.0), (100.0, -30.0)])
 def test_cameras_are_those_of_the_still(opened, city, flights, camera):
     page = opened(scene.page(city, flights=flights, camera=camera, start_paused=True, start_at=5.0, safe_distance=3.5))
     aspect, eye, target = page.evaluate(
@@ -133,6 +134,110 @@ def test_cameras_are_those_of_the_still(opened, city, flights, camera):
     for found, expected in ((eye, view.eye), (target, view.target)):
         x, y, z = found
         assert np.linalg.norm(np.array([x, -z, y]) - expected) < 0.01 * scale
+
+
+def test_at_the_end_it_rests_and_begins_again(opened, city):
+    page = opened(scene.page(city, Route([(90, 18, 30), (90, 10, 30)], "short"), start_paused=True))
+    seconds = float(page.inner_text("#clock").split()[2])
+    page.select_option("#speed", "1")
+    scrub_to(page, seconds, seconds)
+    page.click("#play")  # at the end: from the beginning
+    page.wait_for_function("document.getElementById('scrub').value < 900", timeout=2000)
+    for _ in range(2):
+        page.wait_for_function("document.getElementById('scrub').value == 1000", timeout=10_000)
+        page.wait_for_timeout(300)
+        assert page.input_value("#scrub") == "1000"  # readers see where it ends
+        page.wait_for_function("document.getElementById('scrub').value < 900", timeout=5000)
+
+
+def test_scrubbing_pauses(opened, city, flights):
+    page = opened(scene.page(city, flights=flights))
+    page.wait_for_function("document.body.classList.contains('playing')")
+    scrub_to(page, 3.0, flights["REPARE"].duration)
+    shown = page.inner_text("#clock")
+    page.wait_for_timeout(400)
+    assert page.inner_text("#clock") == shown
+    page.locator("#camera").focus()
+    page.keyboard.press("Escape")
+    page.locator("#pane").focus()
+    page.keyboard.press("Home")
+    page.locator("#play").focus()
+    page.keyboard.press("ArrowRight")  # a step of two per cent, wherever it isn't used otherwise
+    assert float(page.inner_text("#clock").split()[0]) == pytest.approx(flights["REPARE"].duration / 50, abs=0.06)
+
+
+@pytest.mark.parametrize("camera", [(-61.0, 38.0), (0.0, 60.0), (90.0, 30.0), (180.0, 45.0)])
+def test_the_compass_points_to_the_north_and_along_the_wind(opened, city, camera):
+    page = opened(scene.page(city, camera=camera, wind=Wind((3.0, 4.0))))
+    right, up, _ = axes_of(*camera)
+    letter = [float(page.get_attribute("#north", name)) for name in "xy"]
+    assert bearing(letter[0], -letter[1]) == pytest.approx(bearing(right[1], up[1]), abs=0.5)
+    north = turned(page, "#needle", (0, -1))
+    assert bearing(north[0], -north[1]) == pytest.approx(bearing(right[1], up[1]), abs=0.5)
+    wind = turned(page, "#windmark", (0, 1))  # its point is below
+    blows = np.array([0.6, 0.8, 0.0])
+    assert bearing(wind[0], -wind[1]) == pytest.approx(bearing(right @ blows, up @ blows), abs=0.5)
+
+
+def bearing(across, upward):
+    """Clockwise from a corner of the picture [degrees], which none of the cases points to."""
+    return (np.degrees(np.arctan2(across, upward)) + 45) % 360
+
+
+def turned(page, element, direction):
+    """Where a direction (x, y) of a drawing points in the compass."""
+    return page.locator(element).evaluate(
+        "(drawn, [x, y]) => { const m = drawn.transform.baseVal.consolidate().matrix;"
+        " return [m.a * x + m.c * y, m.b * x + m.d * y]; }",
+        list(direction),
+    )
+
+
+def test_rings_are_for_uavs_that_are_too_small_to_see(opened, city, flights):
+    page = opened(scene.page(city, flights=flights, start_paused=True, start_at=4.0))
+    rings = "[...document.querySelectorAll('#overlay [data-kind=uav]')].map(ring => ring.style.display)"
+    assert page.evaluate(rings) == ["", ""]
+    page.select_option("#camera", "chase")
+    page.wait_for_timeout(200)
+    assert page.evaluate(rings)[0] == "none"
+
+
+def test_behind_the_camera_there_are_no_signs(opened, city):
+    page = opened(scene.page(city, Route([(90, 5, 30), (90, 60, 30), (90, 95, 30)], "north"), start_paused=True))
+    shown = "[...document.querySelectorAll('#overlay [data-kind=start]')].map(sign => sign.style.display)"
+    assert page.evaluate(shown) == [""]
+    page.evaluate("viewer.camera.position.set(90, 30, -50); viewer.controls.target.set(90, 30, -90)")
+    page.evaluate("viewer.controls.update(); viewer.render()")
+    assert page.evaluate(shown) == ["none"]  # 45 m behind the eye
+
+
+def test_turning_by_hand_stays_when_the_window_changes(opened, city, flights):
+    page = opened(scene.page(city, flights=flights, start_paused=True))
+    place = "viewer.camera.position.toArray()"
+    page.set_viewport_size({"width": 700, "height": 600})
+    page.wait_for_timeout(300)
+    fitted = page.evaluate(place)
+    page.mouse.move(300, 200)
+    page.mouse.down()
+    page.mouse.move(360, 200, steps=4)
+    page.mouse.up()
+    page.wait_for_timeout(600)
+    turned = page.evaluate(place)
+    assert np.linalg.norm(np.subtract(turned, fitted)) > 1
+    page.set_viewport_size({"width": 1000, "height": 600})
+    page.wait_for_timeout(400)
+    assert page.evaluate(place) == pytest.approx(turned, abs=1e-6)
+
+
+def test_arrows_turn_the_view_and_up_goes_up(opened, city):
+    page = opened(scene.page(city, start_paused=True))
+    page.locator("#pane").focus()
+    heights = [page.evaluate("viewer.camera.position.y")]
+    for key in ("ArrowUp", "ArrowDown"):
+        page.keyboard.press(key)
+        heights.append(page.evaluate("viewer.camera.position.y"))
+    assert heights[1] > heights[0] + 1
+    assert heights[2] == pytest.approx(heights[0], abs=1e-6)
 
 
 def test_keys_choose_cameras_and_fold_the_legend(opened, city, flights):
@@ -154,10 +259,11 @@ def test_keys_choose_cameras_and_fold_the_legend(opened, city, flights):
 
 
 def test_the_uav_is_where_it_is_in_the_drawing(opened, city, flights):
-    page = opened(scene.page(city, flights=flights, start_paused=True, start_at=6.0))
+    moment = 6.13  # between two points of the tracks
+    page = opened(scene.page(city, flights=flights, start_paused=True, start_at=moment))
     drawing = drawing_of(city, (), flights=flights)
     for number, mover in enumerate(drawing.movers):
-        place, turn = mover.at(6.0)
+        place, turn = mover.at(moment)
         found = page.evaluate(
             f"(() => {{ const o = viewer.scene_tree.find(['meshcat', 'mover{number}']).object;"
             " return [o.position.toArray(), o.quaternion.toArray()]; })()"

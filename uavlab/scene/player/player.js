@@ -38,7 +38,7 @@ function playScene(commands, arrays, scene) {
 
   // --- cameras ---
   const camera = viewer.camera, controls = viewer.controls, corners = scene.corners;
-  controls.maxPolarAngle = 0.52 * Math.PI;
+  controls.maxPolarAngle = (scene.camera[1] < 0 ? 1 : 0.52) * Math.PI;  // not below the ground unless asked for
   let following = null;  // the number of the UAV that the camera follows
 
   function axesOf(azimuth, elevation) {
@@ -182,6 +182,8 @@ function playScene(commands, arrays, scene) {
     const back = camera.position.clone().sub(controls.target), azimuth = Math.atan2(back.x, back.z);
     const flat = Math.max(back.y / back.length(), 0.35);
     at("needle").setAttribute("transform", `scale(1 ${flat}) rotate(${azimuth / RADIANS})`);
+    const ahead = [Math.sin(azimuth), -flat * Math.cos(azimuth)], stretch = 34 / Math.hypot(...ahead);
+    ahead.forEach((part, i) => at("north").setAttribute("xy"[i], (stretch * part).toFixed(1)));
     if (scene.wind) {
       at("windmark").style.display = "inline";
       const to = Math.atan2(scene.wind[0], scene.wind[1]);
