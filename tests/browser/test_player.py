@@ -229,6 +229,15 @@ def test_turning_by_hand_stays_when_the_window_changes(opened, city, flights):
     assert page.evaluate(place) == pytest.approx(turned, abs=1e-6)
 
 
+def test_turning_by_keys_ends_following(opened, city, flights):
+    page = opened(scene.page(city, flights=flights, start_paused=True, camera="chase"))
+    page.locator("#pane").focus()
+    page.keyboard.press("ArrowLeft")
+    place = page.evaluate("viewer.camera.position.toArray()")
+    scrub_to(page, 9.0, flights["REPARE"].duration)
+    assert page.evaluate("viewer.camera.position.toArray()") == pytest.approx(place, abs=1e-6)
+
+
 def test_arrows_turn_the_view_and_up_goes_up(opened, city):
     page = opened(scene.page(city, start_paused=True))
     page.locator("#pane").focus()
