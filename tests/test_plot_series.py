@@ -211,6 +211,16 @@ def test_a_logarithmic_axis_has_plain_numbers_also_between_powers():
     assert shown[1] == ["1", "10", "100", "1,000", "10,000", "100,000", "1,000,000"] or "$" in shown[1][0]
 
 
+def test_a_logarithmic_axis_of_small_numbers_writes_all_its_ticks():
+    axis = plot.lines(X, {"a": X * 3e-6}, "x [m]", "risk [1/h]", log="y").axes[0].yaxis
+    axis.figure.draw_without_rendering()
+    low, high = axis.get_view_interval()
+    ticks = zip(axis.get_ticklocs(), axis.get_ticklabels(), strict=True)
+    shown = [label.get_text() for tick, label in ticks if low <= tick <= high]
+    assert len(shown) >= 3
+    assert all(shown)
+
+
 def test_points_by_group():
     groups = {"A*": [(1, 2), (3, np.nan)], "many": np.ones((CLOUD, 2)), "third": (2, 2)}
     figure = plot.points(groups, "length [m]", "risk [1/h]", notes={"best": (1, 2)}, limits={"most": 3}, log="x")

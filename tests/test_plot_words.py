@@ -8,12 +8,13 @@ import re
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageColor
 
 from uavlab import plot
 from uavlab.planners import astar, repare
 from uavlab.plot.pictures import Picture, png_of, quantised
 from uavlab.risk import reference_campus
+from uavlab.route import Route
 
 
 def named(text):
@@ -131,3 +132,12 @@ def test_a_picture_with_a_palette_is_smaller_looks_the_same_and_stays_as_it_is(t
     ]
     assert np.abs(pictures[0] - pictures[1]).mean() < 2
     assert np.quantile(np.abs(pictures[0] - pictures[1]), 0.99) < 25
+
+
+def test_a_palette_keeps_the_colours_of_lines_apart_on_a_map(table1):
+    ways = {name: Route(np.array([[5.0, y, 30], [95.0, y, 30]])) for name, y in (("one", 10.0), ("two", 62.0))}
+    colors = {"one": plot.BLUE, "two": plot.GREEN}
+    picture = png_of(plot.section(table1, 30.0, None, ways, colors=colors), 100)
+    pixels = np.asarray(Image.open(io.BytesIO(picture)).convert("RGB")).reshape(-1, 3)
+    for color in colors.values():
+        assert (pixels == np.array(ImageColor.getrgb(color))).all(axis=1).sum() > 300

@@ -23,8 +23,8 @@ import math
 from dataclasses import replace
 from itertools import product
 
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.colors import Normalize
 from scipy import ndimage
 from scipy.optimize import minimize
 
@@ -33,7 +33,13 @@ from uavlab.city import City, table1_city
 from uavlab.planners import astar, penalty_zone, potential_field, potential_forces, repulsion, shortcut
 from uavlab.vehicle import LIGHT_QUADROTOR
 
-BLACK, BLUE, GREEN, ORANGE = plot.BLACK, plot.BLUE, plot.GREEN, plot.ORANGE
+COLORS = {
+    "potential field, lattice": plot.ORANGE, "potential field, continuous": plot.YELLOW, "flight": plot.BLACK,
+    "out of the notch": plot.ORANGE, "is trapped": plot.ORANGE, "arrives": plot.SKY, "start of Fig. 12": plot.BLACK,
+    "pull": plot.PINK, "push": plot.SKY, "sum": plot.BLACK, "D_min = R = 5 m": plot.BLACK,
+    "D_min = 3.5 m < R": plot.PINK, "D_min = 8 m > R": plot.SKY, "under 50 %": plot.SKY, "50 to 99 %": plot.PINK,
+    "over 99 %": plot.BLACK, "over 99 %, and as short as Table 2": plot.ORANGE, "A*: always arrives": plot.BLUE,
+}  # fmt: skip
 city = table1_city()
 notch, middle = (90, 18, 30), (50, 44, 30)  # REPARE Fig. 12
 
@@ -143,21 +149,17 @@ for attraction in ("quadratic", "conic"):
 # %%
 # NBVAL_CHECK_OUTPUT
 distance = np.linspace(2.5, 9.0, 651)
-kinds = {"$D_{min} = R$ = 5 m": 5.0, "$D_{min}$ = 3.5 m < R": 3.5, "$D_{min}$ = 8 m > R": 8.0}
-figure, axes = plot.new_figure(6.8, 3.6)
-for (name, end), color, style in zip(kinds.items(), (BLACK, BLUE, ORANGE), ("-", "--", "-."), strict=True):
-    axes.plot(distance, repulsion(distance, 50.0, 5.0, safe_distance=end), color=color, linestyle=style, label=name)
-axes.axhline(0, color="0.5", linewidth=0.8)
-axes.annotate("jump", (3.5, 0.2), (3.8, 0.45), arrowprops={"arrowstyle": "->"}, fontsize=9)
-axes.annotate("attracts", (6.5, -0.055), (6.3, 0.2), arrowprops={"arrowstyle": "->"}, fontsize=9)
-axes.set(xlabel="distance D to the obstacle [m]", ylabel="push, k_rep = 50, R = 5 m", ylim=(-0.12, 0.8))
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8)
+kinds = {"D_min = R = 5 m": 5.0, "D_min = 8 m > R": 8.0, "D_min = 3.5 m < R": 3.5}
+curves = {name: repulsion(distance, 50.0, 5.0, safe_distance=end) for name, end in kinds.items()}
 jump = float(repulsion(3.5, 50.0, 5.0, safe_distance=3.5))
-strongest = repulsion(distance, 50.0, 5.0, safe_distance=8.0).min()
+strongest = curves["D_min = 8 m > R"].min()
 print(f"jump at 3.5 m: {jump:.2f}; strongest attraction: {strongest:.3f}")
 assert (round(jump, 2), round(strongest, 3)) == (0.35, -0.059)
-plot.finished(figure)
+
+# %% tags=["figure"]
+plot.lines(distance, curves, "distance D to the obstacle [m]", "push, k_rep = 50, R = 5 m", limits={"0": 0},
+           notes={"jumps": (3.5, 0.1), "attracts": (6.5, strongest)}, y_range=(-0.12, 0.8), x_range=(2.5, 9),
+           colors=COLORS)  # fmt: skip
 
 # %% [markdown]
 # A jump is a kink that a UAV can't fly and a place where it chatters. Attraction by a wall needs no comment. With $R =
@@ -204,7 +206,7 @@ plot.field(city, 30, middle, area=(54, 100, 8, 52), spacing=2.0)
 #
 # `potential_field` follows the force in one of two ways. `moves="continuous"` takes steps of half a cell along
 # $\mathbf F$. `moves="lattice"` takes that of the 26 moves of A* that points best along $\mathbf F$, among the legal
-# ones. In the open, above all roofs, the first flies straight, and the second is as short as moves allow:
+# ones. High up, above all roofs, the first flies straight, and the second is as short as moves allow:
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -232,10 +234,11 @@ for route in (curve, lattice):
 assert (round(curve.clearance(city), 1), lattice.clearance(city)) == (3.0, 0.5)
 
 # %%
-plot.plan(city, curve, lattice)
+both_routes = {"potential field, continuous": curve, "A*": lattice}
+plot.plan(city, both_routes, colors=COLORS)
 
 # %%
-plot.profile(city, curve, lattice)
+plot.profile(city, both_routes, colors=COLORS)
 
 # %% [markdown]
 # **It sees nothing beyond its reach.** Delete all of the city that is more than a few metres away from the route: the
@@ -272,17 +275,17 @@ print(f"A*: {way_out.length:.1f} m")
 assert round(way_out.length, 1) == 66.4
 
 # %%
-plot.field(city, 30, middle, both_fields, area=(66, 96, 12, 40), spacing=1.5)
+plot.field(city, 30, middle, both_fields, area=(66, 96, 12, 40), spacing=1.5, colors=COLORS)
 
 # %% [markdown]
-# Both end in the pond. Seen in space, with the way that A* finds (run the notebook and watch the UAV turn on the
+# Both end in the pond. Seen in 3D, with the way that A* finds (run the notebook and watch the UAV turn on the
 # spot; left alone it would go round for ever, here for 12 rounds):
 
 # %%
 first_visit = int(np.flatnonzero((trapped.points == trapped.points[-1]).all(axis=1))[0])
 cycle = trapped.points[first_visit:]
 endless = replace(trapped, points=np.vstack([trapped.points, *[cycle[1:]] * 11]))
-scene.show(city, {"potential field, lattice": endless}, way_out)
+scene.show(city, {"potential field, lattice": endless}, way_out, colors=COLORS)
 
 # %% [markdown]
 # What happens there? Along the way, the sizes of pull, push and their vector sum, and the distance that is left:
@@ -295,8 +298,10 @@ for above, below, (title, route), shown in zip(panels[:2], panels[2:], both_fiel
         name: np.linalg.norm(force, axis=1) for name, force in (("pull", pull), ("push", push), ("sum", pull + push))
     }
     left = np.linalg.norm(route.points[:shown] - middle, axis=1)
-    plot.lines(range(shown), forces, "step", "force, k_tra = 1", title=title, axes=above)
-    plot.lines(range(shown), {"distance": left}, "step", "distance to the goal [m]", axes=below)
+    plot.lines(range(shown), forces, "step", "force, k_tra = 1", title=title, colors=COLORS, axes=above)
+    plot.lines(range(shown), {title: left}, "step", "distance to the goal [m]", colors=COLORS, axes=below)
+    for axes in (above, below):
+        axes.xaxis.get_major_locator().set_params(integer=True)
 figure
 
 # %% [markdown]
@@ -398,8 +403,8 @@ assert 0.15 < caught < 0.25
 
 # %% tags=["figure"]
 areas = {name: fate == value for value, name in enumerate(("arrives", "is trapped", "building"))}
-plot.area_map(city, areas, points={"start of Fig. 12": [notch[:2]], "goal": [middle[:2]]}, title="Starts 30 m above the ground",
-              colors={"arrives": plot.YELLOW, "is trapped": plot.BLUE, "start of Fig. 12": plot.BLACK})  # fmt: skip
+plot.area_map(city, areas, points={"start of Fig. 12": [notch[:2]], "goal": [middle[:2]]}, colors=COLORS,
+              title="Starts 30 m above the ground, moves on the lattice")  # fmt: skip
 
 # %% [markdown]
 # If the goal were a lamp, the traps would lie in the *shadows* of the buildings. From the rim of a shadow the UAV
@@ -428,20 +433,13 @@ inside = np.all(np.array(ends)[:, :2] > (70, 15), axis=1) & np.all(np.array(ends
 print(f"in the notch: {inside.sum()}")
 assert len(ends) == inside.sum() == 200
 
-# %%
-figure, panels = plt.subplots(2, 4, figsize=(10.4, 5.2), dpi=plot.DPI, layout="constrained", sharex=True, sharey=True)
-for axes, kind, table in zip(panels.flat, kinds, left, strict=True):
-    image = axes.imshow(table, origin="lower", cmap=plot.SEQUENTIAL, vmin=20, vmax=40)
-    axes.set_title(", ".join(kind), fontsize=8)
-    axes.set_xticks(range(len(reaches)), [f"{r:g}" for r in reaches])
-    axes.set_yticks(range(len(pushes)), [f"{p:g}" for p in pushes])
-    for (m, n), value in np.ndenumerate(table):
-        color = "white" if value < 31 else "black"
-        axes.text(n, m, f"{value:.0f}", ha="center", va="center", fontsize=7, color=color)
-figure.supxlabel("reach R [m]", fontsize=9)
-figure.supylabel("k_rep", fontsize=9)
-figure.colorbar(image, ax=panels, label="left to the goal where it is stuck [m]", shrink=0.85)
-plot.finished(figure)
+# %% tags=["figure"]
+figure, panels = plot.new_panels(2, 4, share="xy", width=11.4, height=5.6)
+norm, columns, rows = Normalize(20, 40), [f"{r:g}" for r in reaches], [f"{p:g}" for p in reversed(pushes)]
+for axes, kind, table in zip(panels, kinds, left, strict=True):
+    plot.matrix(table[::-1], rows, columns, "k_rep", "reach R [m]", "left to the goal [m]", norm=norm,
+                title=", ".join(kind), axes=axes)  # fmt: skip
+figure
 
 # %% [markdown]
 # A harder push only makes it stop earlier. There is a reason. Draw a ball around the goal that is just too small to
@@ -534,14 +532,15 @@ for name in list(settings)[:2]:
 for name in list(settings)[4:]:
     assert 1.02 < measured[name][0][0] < 1.09
 
-# %%
-rows = {name: f"{name} ({1 - arrived[name].mean():.0%} fail)" for name in measured}
+# %% tags=["figure"]
+rows = {name: f"{name} ({100 * (1 - arrived[name].mean()):.0f} % fail)" for name in measured}
 others = {
     other: {rows[name]: tuple(values[column]) for name, values in measured.items()}
     for column, other in enumerate(("A*", "REPARE", "A* + shortcut"))
 }
-printed = {"equal": 1.0, "as printed:\nA* 0.952, REPARE 0.973": (0.952, 0.973)}
-plot.intervals(others, "length / length of the potential field's route, mean", places=printed, digits=2)
+printed = {"equal": 1.0, "Table 2": (0.952, 0.973)}
+plot.intervals(others, "length / length of the potential field's route, mean", places=printed, digits=2,
+               title="Table 2 prints A* 0.952, REPARE 0.973 (grey)")  # fmt: skip
 
 # %% [markdown]
 # * **On the lattice Table 2 is right**, with two settings that were chosen for it (the first two rows): both lengths
@@ -601,19 +600,13 @@ print(f"as short as Table 2 and safe: {both.sum()}, fail on {failing[both].min()
 assert both.any()
 assert failing.min() > 0.05
 
-# %%
-figure, axes = plot.new_figure(6.8, 4.2)
-image = axes.scatter(ratio, 100 * failing, c=100 * keeping, cmap=plot.SEQUENTIAL, edgecolor="black", s=50)
-axes.scatter(
-    ratio[both], 100 * failing[both], facecolor="none", edgecolor=ORANGE, s=160, linewidth=2, label="short and safe"
-)
-axes.plot(1.0, 0.0, "*", color=BLUE, markersize=14, label="A*: always arrives")
-axes.axvline(0.952, color="0.4", linestyle="--", label="REPARE Table 2")
-axes.set(xlabel="length of A* / length of the potential field, lattice", ylabel="doesn't arrive [% of pairs]")
-axes.grid(alpha=0.3)
-axes.legend(fontsize=8, loc="upper right")
-figure.colorbar(image, label="keeps 3.5 m all along [% of its routes]")
-plot.finished(figure)
+# %% tags=["figure"]
+groups = {"under 50 %": keeping < 0.5, "50 to 99 %": (keeping >= 0.5) & (keeping <= 0.99),
+          "over 99 %": (keeping > 0.99) & ~both, "over 99 %, and as short as Table 2": both}  # fmt: skip
+marks = {name: np.column_stack([ratio, 100 * failing])[those] for name, those in groups.items()}
+plot.points(marks | {"A*: always arrives": (1.0, 0.0)}, "length of A* / length of the potential field, lattice",
+            "doesn't arrive [% of pairs]", places={"Table 2": 0.952}, y_range=(-3, 67), colors=COLORS,
+            title="40 settings, by the share of their routes that keep 3.5 m")  # fmt: skip
 
 # %% [markdown]
 # There isn't. Short and safe can be had together. What none of the settings does is to arrive always.
@@ -644,15 +637,19 @@ print(f"A*'s expansions: mean {expanded.mean():,.0f}, median {np.median(expanded
 assert looks["field, all surface voxels"] > looks["A*, 26 neighbours a node"] > looks["field, box of 11³ voxels"]
 
 # %%
-figure = plot.bars(looks, "looks a route, mean of 1000 pairs (logarithmic scale)")
-figure.axes[0].set_xscale("log")
-figure.axes[0].set_xlim(10, 1e8)
 seconds = {
     name: np.array([r.info["elapsed"] for r in f])
     for name, f in (("A*", plain), ("field", flown["lattice, conic, 5, 5 m"]))
 }
 for name, average in (("means", np.mean), ("medians", np.median)):
     print(f"time of A* / time of the field, {name}: {average(seconds['A*']) / average(seconds['field']):.1f}")
+
+# %% tags=["figure"]
+figure = plot.bars(looks, "looks a route, mean of 1000 pairs (logarithmic scale)")
+figure.axes[0].set_xscale("log")
+figure.axes[0].set_xlim(10, 1e8)
+for bar, name in zip(figure.axes[0].patches, looks, strict=True):
+    bar.set_color(plot.BLUE if name.startswith("A*") else plot.ORANGE)
 figure
 
 # %% [markdown]
@@ -662,14 +659,15 @@ figure
 #
 # ## Turn it yourself
 #
-# The route of the flight above and that out of the notch, from above. Find a push that breaks the first; no push will
-# help the second.
+# The flight above and that out of the notch, from above, both with moves on the lattice: the flight, which had 121.3 m
+# with continuous moves, begins here with 135.0 m. Find a push that breaks the first; no push will help the second.
 
 
 # %%
 def draw(push, reach):
-    pairs = {"flight": (start, goal), "notch": (notch, middle)}
-    return plot.plan(city, {name: potential_field(city, *pair, push=push, reach=reach) for name, pair in pairs.items()})
+    pairs = {"flight": (start, goal), "out of the notch": (notch, middle)}
+    routes = {name: potential_field(city, *pair, push=push, reach=reach) for name, pair in pairs.items()}
+    return plot.plan(city, routes, colors=COLORS)
 
 
 labels, values = (

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, LogLocator, NullLocator
 
 from uavlab import checks
 from uavlab.plot.colors import Style, checked_colors
@@ -113,5 +113,7 @@ def write_plainly(axis: Any) -> None:
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,), numticks=12))
     if low >= 1e-4 and high <= 1e6:
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.7g}"))
+    elif few:
+        axis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(np.inf, np.inf)))  # 5·10ⁿ, too
     if few:
         axis.set_minor_locator(NullLocator())

@@ -1,8 +1,8 @@
 """Pictures that share one palette: many frames of one figure in few bytes.
 
-The most frequent colours of all frames are kept exactly, which are paper, ink and lines; the others, of smooth edges
-and colour maps, are brought together by Pillow's median cut. Equal colours get equal numbers in all frames, so that
-what two frames have in common can be left out of the second.
+The colours of lines by name and the most frequent others of all frames are kept exactly, so that two lines on a map
+stay two; the rest, of smooth edges and colour maps, is brought together by Pillow's median cut. Equal colours get equal
+numbers in all frames, so that what two frames have in common can be left out of the second.
 """
 
 from __future__ import annotations
@@ -14,10 +14,13 @@ from itertools import pairwise
 import numpy as np
 from PIL import Image
 
+from uavlab.plot.colors import CRASH_COLOR, LINES
+
 COLORS = 127
 """Of a palette. With 255 charts are 15 % larger, and nobody sees it."""
 EXACT = 32
-"""Of those, kept as they are."""
+"""Of those, kept as they are: those of lines first, which are rare on maps."""
+LINE_CODES = [int(color[1:], 16) for color in (*LINES, CRASH_COLOR)]
 TRANSPARENT = 255
 """Number of a pixel that isn't drawn."""
 STRIP = 500_000
@@ -51,7 +54,7 @@ def chosen_palette(codes: np.ndarray, counts: np.ndarray) -> np.ndarray:
     """At most `COLORS` colours (C, 3) that stand for those that are there so often."""
     if len(codes) <= COLORS:
         return colors_of(codes)
-    order = np.argsort(-counts, kind="stable")
+    order = np.lexsort((-counts, ~np.isin(codes, LINE_CODES)))
     weights = np.sqrt(counts[order[EXACT:]])  # by their counts alone, large areas would take all of the palette
     repeats = np.ceil(weights * min(1.0, STRIP / weights.sum())).astype(int)
     strip = np.repeat(colors_of(codes[order[EXACT:]]), repeats, axis=0)
