@@ -128,6 +128,13 @@ def test_panes_let_through_what_is_behind_them_from_far_to_near():
                        0.5 * blue + 0.5 * (0.5 * red + 0.5 * green))  # fmt: skip
 
 
+def test_panes_hide_nothing_and_of_two_in_one_place_the_first_is_seen():
+    pane = Surface(WALL, "#ff0000", 0.5, lit=False)
+    assert not drawn(NORTHWARD, {"pane": pane}).near.any()
+    both = {"first": Surface(WALL, "#ff0000", lit=False), "second": Surface(WALL, "#0000ff", lit=False)}
+    assert np.allclose(drawn(NORTHWARD, both).pixels, (1, 0, 0))
+
+
 def column_of(x, y, width=60, height=40):
     """In the picture of `NORTHWARD`."""
     return width / 2 + height / 2 / np.tan(np.radians(FIELD_OF_VIEW_DEG / 2)) * x / (y + 10)

@@ -42,17 +42,31 @@ def test_without_ways_or_without_need_it_is_the_usual_side(table1):
     assert drawing_of(table1, (high,)).overview == USUAL
 
 
-def test_line_of_sight_is_that_of_rays_step_by_step(table1):
+@pytest.mark.parametrize("scattered", [False, True])
+def test_line_of_sight_is_that_of_rays_step_by_step(table1, scattered):
     rng = np.random.default_rng(1)
+    city = City(rng.random((100, 100, 100)) < 0.003, name="Single voxels") if scattered else table1
     places = rng.uniform((0, 0, 0), (100, 100, 90), (60, 3))
-    places = places[table1.is_free(places)]
+    places = places[city.is_free(places)]
     for side in (USUAL, (20.0, 10.0), (170.0, 60.0), (-90.0, 90.0)):
         toward = axes_of(*side)[2]
         ways = places[:, None] + np.arange(1.0, 400.0, 0.5)[:, None] * toward
         inside = ((ways >= 0) & (ways < 100)).all(axis=-1)
         free = np.ones(ways.shape[:2], bool)
-        free[inside] = ~table1.occupied[tuple(np.floor(ways[inside]).astype(int).T)]
-        assert in_sight(table1, places, side).tolist() == free.all(axis=1).tolist()
+        free[inside] = ~city.occupied[tuple(np.floor(ways[inside]).astype(int).T)]
+        assert in_sight(city, places, side).tolist() == free.all(axis=1).tolist()
+
+
+def test_a_little_more_in_sight_is_no_reason_to_turn():
+    occupied = np.zeros((60, 60, 40), bool)
+    occupied[30, :, :20] = True
+    city = City(occupied, name="Wall")
+    turned = {}
+    for name, lowest, last in (("short dip", 15.5, 21), ("long dip", 8, 21), ("short, but the end", 21, 15)):
+        way = [(28, 5, 21), (28, 30, 21), (28, 30, lowest), (28, 30, 21), (28, 55, 21), (28, 55, last)]
+        drawing = drawing_of(city, (Route(np.array(way, float), "behind the wall's top"),))
+        turned[name] = drawing.overview != USUAL
+    assert turned == {"short dip": False, "long dip": True, "short, but the end": True}
 
 
 def test_where_a_way_ends_counts_more(table1):

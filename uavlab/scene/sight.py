@@ -14,8 +14,8 @@ PLACES, FEWEST = 600, 20
 """On all ways together, evenly spaced, and on each."""
 GAIN = 0.05
 """Another side than the usual one has to show so much more, as a share of all places."""
-ENDS = 5
-"""Where a way ends counts as much as so many of its places."""
+END = 0.1
+"""Where a way ends, at its goal or in a crash, counts as much as this share of its places."""
 
 
 def overview_of(city: City, drawing: Drawing) -> tuple[float, float]:
@@ -25,7 +25,7 @@ def overview_of(city: City, drawing: Drawing) -> tuple[float, float]:
     usual = DIRECTIONS["overview"]
     count = max(PLACES // len(drawing.movers), FEWEST)
     ways = [evenly(mover.points, count) for mover in drawing.movers]
-    places = np.concatenate([np.concatenate([way, *ENDS * [way[-1:]]]) for way in ways])
+    places = np.concatenate([np.concatenate([way, np.repeat(way[-1:], int(END * count), axis=0)]) for way in ways])
     turns = sorted(np.linspace(-180, 180, SIDES, endpoint=False), key=lambda turn: (abs(turn), turn))
     sides = [(float((usual[0] + turn + 180) % 360 - 180), usual[1]) for turn in turns]
     seen = [float(in_sight(city, places, side).mean()) for side in sides]
