@@ -95,6 +95,16 @@ def test_a_map_s_figure_has_its_shape(shape, height):
         assert figure.get_size_inches() == pytest.approx((6.4, height))
 
 
+def test_signs_outside_of_the_picture_are_not_in_its_legend(table1):
+    trapped = potential_field(table1, (90, 18, 30), (50, 44, 30))
+    names = [
+        [text.get_text() for text in plot.field(table1, 30, (50, 44, 30), trapped, area=area).legends[0].get_texts()]
+        for area in ((66, 96, 12, 40), (40, 96, 12, 50))
+    ]
+    assert names == [["potential field: not reached", "start", "stopped"],
+                     ["potential field: not reached", "start", "stopped", "goal not reached"]]  # fmt: skip
+
+
 def test_field_refuses_what_it_can_t_draw(table1):
     with pytest.raises(ValueError, match="height must lie on the map, 0 to 100 m, got 120"):
         plot.field(table1, 120, (50, 44, 30))

@@ -286,7 +286,7 @@ def field(
     if not planned and west <= x <= east and south <= y <= north:
         look = SIGNS["goal"] | {"markersize": 9, "markeredgecolor": "white", "linestyle": ""}
         axes.plot(x, y, color=BLACK, label="goal", zorder=3, **look)
-    draw_routes(axes, planned, colors)
+    draw_routes(axes, planned, colors, (west, east, south, north))
     axes.set(xlim=(west, east), ylim=(south, north))
     axes.set_title(title_of(city, height, "buildings black"))
     return finished(figure)

@@ -19,13 +19,12 @@ from uavlab.plot.frames import Frame, checked_frame, framed
 from uavlab.plot.frames import label as checked_label
 from uavlab.plot.panels import by_few_names, explain, figure_of, finite_or_gaps, panel, rows_of_points, styles_on
 from uavlab.plot.series import draw_points
-from uavlab.plot.style import add_color_bar, area_of, draw_map, map_size, plain, with_gaps
+from uavlab.plot.style import Area, add_color_bar, area_of, draw_map, map_size, plain, with_gaps
 
 HALO = [matplotlib.patheffects.Stroke(linewidth=4.0, foreground="white"), matplotlib.patheffects.Normal()]
 """About lines on colours."""
 Named = Mapping[str, npt.ArrayLike]
 Range = tuple[float | None, float | None]
-Area = tuple[float, float, float, float]
 
 
 def diagram(

@@ -22,6 +22,8 @@ from uavlab.risk import RiskMap
 from uavlab.route import Route, Way, as_route
 
 DPI = 100
+Area = tuple[float, float, float, float]
+"""Of a map: west, east, south and north end [m]."""
 MAP_WIDTH = 6.4
 """Of a figure with a map and its colour bar [inches]."""
 MOST_INCHES = 650
@@ -38,7 +40,7 @@ def level_of(city: City, height: float, name: str = "height") -> int:
     return k
 
 
-def area_of(city: City, area: tuple[float, float, float, float] | None) -> tuple[float, float, float, float]:
+def area_of(city: City, area: Area | None) -> Area:
     """West, east, south and north end [m] of what is to be shown, which is all of the map by default."""
     (left, lowest), (right, highest) = city.bounds[:, :2].tolist()
     if area is None:
@@ -52,7 +54,7 @@ def area_of(city: City, area: tuple[float, float, float, float] | None) -> tuple
     return west, east, south, north
 
 
-def map_size(window: tuple[float, float, float, float]) -> tuple[float, float]:
+def map_size(window: Area) -> tuple[float, float]:
     """Width and height [inches] of a figure with a map of this part, so that a long one leaves no empty frame."""
     west, east, south, north = window
     return MAP_WIDTH, float(np.clip(1.2 + (MAP_WIDTH - 2.2) * (north - south) / (east - west), 3.6, 8.0))
@@ -205,14 +207,16 @@ SIGNS: dict[str, dict[str, Any]] = {
 """Where routes begin and end, in plans and scenes."""
 
 
-def draw_routes(axes: Axes, routes: Sequence[Route], colors: Mapping[str, str] | None = None) -> None:
-    """Routes from above, each with its start and where it arrives, or stops and should have arrived."""
+def draw_routes(
+    axes: Axes, routes: Sequence[Route], colors: Mapping[str, str] | None = None, window: Area | None = None
+) -> None:
+    """Routes from above, each with its start and where it arrives, or stops and should have arrived, if on the map."""
     looks = styles([route.planner for route in routes], colors)
     signs = []
     for route, (color, line) in zip(routes, looks, strict=True):
         axes.plot(*route.points[:, :2].T, color="white", linewidth=3.5)
         axes.plot(*route.points[:, :2].T, color=color, linestyle=line, linewidth=2, label=label_of(route))
-        signs += [(name, tuple(place[:2]), color) for name, place in signs_of(route).items()]
+        signs += [(name, tuple(place[:2]), color) for name, place in signs_of(route).items() if within(place, window)]
     for number, (name, place, color) in enumerate(signs):
         above = sum(place == other for _, other, _ in signs[number + 1 :])  # the lower one is larger, and shows
         look = {"markeredgecolor": "white"} | SIGNS[name] | {"markersize": 9 + 4 * above, "linestyle": ""}
@@ -224,6 +228,14 @@ def draw_routes(axes: Axes, routes: Sequence[Route], colors: Mapping[str, str] |
             axes.plot([], [], linestyle="", color=BLACK, markersize=7, label=name, **SIGNS[name])
     if axes.get_legend_handles_labels()[0]:
         axes.figure.legend(loc="outside lower center", fontsize=8, ncols=2, handlelength=3.5)
+
+
+def within(place: np.ndarray, window: Area | None) -> bool:
+    """Whether a place lies on the part of a map that is shown, which is all of it by default."""
+    if window is None:
+        return True
+    west, east, south, north = window
+    return bool(west <= place[0] <= east and south <= place[1] <= north)
 
 
 def signs_of(route: Route) -> dict[str, np.ndarray]:

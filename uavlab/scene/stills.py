@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import matplotlib.patheffects
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,6 +30,8 @@ from uavlab.scene.raster import FINER, Frame
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
 from uavlab.weather import Wind
 
+HALO = [matplotlib.patheffects.withStroke(linewidth=2.5, foreground="white")]
+"""About letters on the picture."""
 WIDTH, HEIGHT = 7.2, 4.8
 """Of the picture alone [inches]."""
 SIGNS: dict[str, dict[str, Any]] = {
@@ -211,7 +214,7 @@ def draw_compass(axes: Axes, frame: Frame, view: View, drawing: Drawing) -> None
         tail, tip, (x, y) = foot - 24 * along, foot + 24 * along, foot + 33 * along
         look = {"arrowstyle": "-|>", "color": color, "linewidth": width}
         axes.annotate("", (tip[0], tip[1]), (tail[0], tail[1]), arrowprops=look)
-        axes.text(x, y, text, ha="center", va="center", fontsize=8, color=color, weight="bold")
+        axes.text(x, y, text, ha="center", va="center", fontsize=8, color=color, weight="bold", path_effects=HALO)
 
     arrow(np.array([0.0, 1.0, 0.0]), "#222222", 1.5, "N")
     if drawing.wind.any():
@@ -224,7 +227,8 @@ def draw_compass(axes: Axes, frame: Frame, view: View, drawing: Drawing) -> None
     line = np.array([(left, low - 8), (left, low), (left + length * metre, low), (left + length * metre, low - 8)])
     axes.plot(*line.T, color="white", linewidth=4, zorder=2)
     axes.plot(*line.T, color="#222222", linewidth=1.5, zorder=2)
-    axes.text(left + length * metre / 2, low - 4, f"{length:g} m", ha="center", va="bottom", fontsize=8)
+    axes.text(left + length * metre / 2, low - 4, f"{length:g} m", ha="center", va="bottom", fontsize=8,
+              path_effects=HALO)  # fmt: skip
 
 
 def handle_of(entry: Entry) -> Line2D | Patch:
