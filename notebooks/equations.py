@@ -42,7 +42,8 @@ UNKNOWN = re.compile(r"<text[^>]*>([^<]+)</text>")
 """A letter that MathJax's font doesn't have; it would have no width."""
 STYLE = """
 mjx-container { position: relative; white-space: nowrap; }
-mjx-container > svg { overflow: visible; min-width: 1px; min-height: 1px; }
+mjx-container > svg { overflow: visible; min-width: 1px; min-height: 1px; max-width: none !important; }
+.jp-RenderedMarkdown { overflow: auto hidden; /* on a phone tables and long equations keep their size, too */ }
 mjx-container[display] { display: block; margin: 1em 0; padding: 2px 0; text-align: center; overflow: auto hidden; }
 mjx-container[width] { min-width: 0 !important; /* a long one with a number is scrolled, too */ }
 mjx-container math { position: absolute; top: 0; left: 0; width: 1px; height: 1px; overflow: hidden; }

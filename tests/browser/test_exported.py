@@ -20,7 +20,7 @@ SOURCE = r"""
 #
 # | what | as |
 # |---|---|
-# | a norm | $\lVert x \rVert$ |
+# | a norm | $\lVert x \rVert = \sqrt{x_1^2 + x_2^2 + x_3^2 + x_4^2 + x_5^2 + x_6^2}$ and what more there is to say |
 #
 # \begin{align} a &= b + c + d + e + f + g + h + i + j + k + l + m + n + o + p + q + r + s \tag{2} \end{align}
 #
@@ -50,7 +50,7 @@ TEX = [
     r"a^2 + b^2 = c^2",
     r"F = \tfrac12 \rho C S V^2 \tag{1}",
     r"\xi < \sigma",
-    r"\lVert x \rVert",
+    r"\lVert x \rVert = \sqrt{x_1^2 + x_2^2 + x_3^2 + x_4^2 + x_5^2 + x_6^2}",
     r"\begin{align} a &= b + c + d + e + f + g + h + i + j + k + l + m + n + o + p + q + r + s \tag{2} \end{align}",
 ]
 EQUATIONS = """
@@ -129,7 +129,10 @@ def test_equations_stand_on_the_line_in_the_size_and_colour_of_the_text(page):
 
 
 def test_on_a_phone_long_equations_are_scrolled_and_the_page_is_not(page, picture_of):
+    in_table = page.locator("td svg")
+    wide = in_table.bounding_box()["width"]
     page.set_viewport_size({"width": 390, "height": 800})
+    assert in_table.bounding_box()["width"] == wide
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     long = page.locator("mjx-container[display]").nth(1)
     assert long.evaluate("one => one.getBoundingClientRect().right") <= 390
