@@ -4,7 +4,7 @@
 `notebooks/*.ipynb` up to date and runs it in a fresh kernel; figures and printed results stay in, 3D pages are taken
 out (they come back with Run All, a still picture stands for them). Exercises are their solutions with the answers
 taken out. `--check` changes nothing and fails if anything is stale. `--html` runs notebooks and writes them to
-`notebooks/html/` as pages that work offline, with their scenes and sliders.
+`notebooks/html/` as pages that work offline, each in one file with its scenes, sliders and equations.
 """
 
 import argparse
@@ -39,7 +39,11 @@ def main() -> int:
         command.error(f"no source in {SOURCES} is called {' or '.join(options.names)}")
     if options.html:
         for source in sources:
-            print(export(run(jupytext.read(source)), source.stem, HERE / "html"), flush=True)
+            notebook = run(jupytext.read(source))
+            try:
+                print(export(notebook, source.stem, HERE / "html"), flush=True)
+            except ValueError as problem:
+                raise SystemExit(f"no page: {problem}") from None
         return 0
     stale = {source: reason for source in sources if (reason := staleness(source))}
     orphans = [] if options.names else orphaned()

@@ -1,46 +1,38 @@
 """A notebook that was run as one HTML page that works offline: scenes and sliders live, equations typeset.
 
-MathJax 3 comes once from the npm registry and lies beside the pages; nothing else is outside of a page, and nothing is
-asked from a network when it is read.
+Everything is inside of the page: nothing lies beside it, and nothing is asked from a network when it is read.
 """
 
 import base64
 import html
-import shutil
-import subprocess
-import tarfile
-import tempfile
+import re
 from pathlib import Path
 
+from equations import Equations
+from jinja2 import pass_context
+from jinja2.runtime import Context
 from nbconvert import HTMLExporter
+from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath, MathInlineParser
 from nbformat import NotebookNode
 
 from uavlab.plot.pictures import quantised
 
-MATHJAX = "mathjax@3.2.2"
-SCRIPT = "tex-svg-full.js"
 TEMPLATE = """{% extends 'lab/index.html.j2' %}
 {% block html_head_js_requirejs %}{% endblock %}
 {% block html_head_js_mermaidjs %}{% endblock %}
+{% block html_head_js_mathjax %}{% endblock %}
 {% block jupyter_widgets %}{% endblock %}
-{% block html_head_js_mathjax %}
-<script>
-MathJax = {tex: {inlineMath: [["$", "$"], ["\\\\(", "\\\\)"]], displayMath: [["$$", "$$"], ["\\\\[", "\\\\]"]],
-                 processEscapes: true, processEnvironments: true},
-           options: {skipHtmlTags: ["script", "noscript", "style", "textarea", "pre", "code", "svg", "iframe"]}};
-</script>
-<script async src="mathjax/tex-svg-full.js"></script>
-{% endblock %}
+{% block html_head_css %}<style>{{ equations.style }}</style>{% endblock %}
+{% block data_latex scoped %}{{ output.data['text/latex'] | markdown2html }}{% endblock %}
+{% block body_footer %}{{ equations.letters() }}{{ super() }}{% endblock %}
 """
+EQUATION = re.compile(r"<uavlab-(inline|display)>(.*?)</uavlab-\1>", re.DOTALL)
 
 
 def export(notebook: NotebookNode, name: str, folder: Path) -> Path:
-    """Write a notebook with its live outputs as a page into a folder, with MathJax beside it."""
+    """Write a notebook with its live outputs as a page into a folder; `ValueError` names equations that aren't TeX."""
     folder.mkdir(parents=True, exist_ok=True)
-    fetch_mathjax(folder / "mathjax")
-    page, _ = HTMLExporter(raw_template=TEMPLATE, template_name="lab").from_notebook_node(
-        described(notebook), {"metadata": {"name": name}}
-    )
+    page, _ = Exporter().from_notebook_node(described(notebook), {"metadata": {"name": name}})
     path = folder / f"{name}.html"
     path.write_text(page, encoding="utf-8")
     return path
@@ -61,18 +53,42 @@ def described(notebook: NotebookNode) -> NotebookNode:
     return notebook
 
 
-def fetch_mathjax(folder: Path) -> None:
-    """MathJax's script from its npm package, once."""
-    if (folder / SCRIPT).exists():
-        return
-    if shutil.which("npm") is None:
-        raise SystemExit("npm is needed for the equations of exported pages: install Node.js, and run this again")
-    with tempfile.TemporaryDirectory() as place:
-        subprocess.run(["npm", "pack", "--silent", MATHJAX], cwd=place, check=True, stdout=subprocess.DEVNULL)
-        (archive,) = Path(place).glob("*.tgz")
-        with tarfile.open(archive) as packed:
-            script = packed.extractfile(f"package/es5/{SCRIPT}")
-            assert script is not None
-            content = script.read()
-    folder.mkdir(exist_ok=True)
-    (folder / SCRIPT).write_bytes(content)
+class Exporter(HTMLExporter):
+    """Jupyter's exporter of one page, with equations typeset in Markdown."""
+
+    def __init__(self) -> None:
+        self.equations = Equations()
+        super().__init__(raw_template=TEMPLATE, template_name="lab")
+        self.environment.globals["equations"] = self.equations
+
+    @pass_context
+    def markdown2html(self, context: Context, source: str) -> str:
+        """Markdown as HTML; `ValueError` names the notebook, the cell and the equation."""
+        renderer = Renderer(escape=False, attachments=context["cell"].get("attachments", {}))
+        markup = MarkdownWithMath(renderer, inline=MathParser(hard_wrap=False)).render(source)
+        try:
+            return EQUATION.sub(lambda one: self.equations.typeset(html.unescape(one[2]), one[1] == "display"), markup)
+        except ValueError as problem:
+            number = next(at for at, cell in enumerate(context["nb"].cells, 1) if cell is context["cell"])
+            raise ValueError(f"{context['resources']['metadata']['name']}, cell {number}: {problem}") from None
+
+
+class MathParser(MathInlineParser):
+    """Jupyter's, with $ close to the equation, no digit behind, no code inside: amounts in dollars are no equation."""
+
+    SPECIFICATION = MathInlineParser.SPECIFICATION | {
+        "inline_math_tex": r"(?<![$\\])\$(?!\s)(?P<math_inline_tex>(?:\\.|[^$\\`])+?)(?<!\s)\$(?![$\d])"
+    }
+
+
+class Renderer(IPythonRenderer):
+    """Jupyter's, with equations between marks: headings' anchors and alternative texts are made from their TeX."""
+
+    def inline_math(self, body: str) -> str:
+        return f"<uavlab-inline>{html.escape(body)}</uavlab-inline>"
+
+    def block_math(self, body: str) -> str:
+        return f"<uavlab-display>{html.escape(body)}</uavlab-display>"
+
+    def latex_environment(self, name: str, body: str) -> str:
+        return self.block_math(f"\\begin{{{name}}}{body}\\end{{{name}}}")
