@@ -38,7 +38,7 @@ from uavlab.vehicle import GRAVITY, RISK_QUADROTOR
 # %%
 # NBVAL_CHECK_OUTPUT
 BLACK, BLUE, GREEN, ORANGE, PINK, YELLOW = plot.BLACK, plot.BLUE, plot.GREEN, plot.ORANGE, plot.PINK, plot.YELLOW
-COLORS = {"least risk + B-spline": BLACK, "swarm, 1 free": ORANGE, "PSO-BAS, its B-spline": GREEN}
+COLORS = {"least risk + B-spline": BLACK, "swarm, 1 waypoint": ORANGE, "PSO-BAS, its B-spline": GREEN}
 uav = RISK_QUADROTOR
 print(f"{uav.name}: {uav.diameter:g} m wide, cruises at {uav.cruise_speed:g} m/s, {uav.thrust:g} N of thrust")
 
@@ -470,9 +470,8 @@ for count in (5, 4, 3, 2, 1):
         waypoint_swarm(campus, start, goal, rng=seed, waypoints=count, refinement=0.0, min_clearance=3.0)
         for seed in range(8)
     ]
-    candidates[f"swarm, {count} waypoints"[: -1 if count == 1 else None]] = [
-        Curve(found.info["control"], planner=f"swarm, {count} free") for found in planned if found.reached
-    ]
+    name = f"swarm, {count} waypoints"[: -1 if count == 1 else None]
+    candidates[name] = [Curve(found.info["control"], planner=name) for found in planned if found.reached]
 
 # %%
 table = {}

@@ -425,14 +425,13 @@ assert 0.05 < push < 0.3
 
 # %% tags=["figure"]
 bands = {"3σ of gusts and GPS": (-3 * sigma, 3 * sigma), "3σ of gusts": (-3 * push + 0 * sigma, 3 * push + 0 * sigma)}
-figure = plot.lines(time, {}, "time after take-off [s]", "offset to the side [m]", bands=bands)
-figure.axes[0].plot(time, offsets.T, color="0.3", linewidth=0.4, alpha=0.3, label="_")
-figure.axes[0].plot([], [], color="0.3", linewidth=0.4, label="200 flights, the truth")
-figure.axes[0].legend(fontsize=8, loc="upper left")
+figure = plot.lines(time, {"one of the 200 flights": offsets[0]}, "time after take-off [s]", "offset to the side [m]",
+                    bands=bands, colors={"one of the 200 flights": plot.BLACK})  # fmt: skip
+figure.axes[0].plot(time, offsets[1:].T, color="0.3", linewidth=0.4, alpha=0.3, label="_")
 figure
 
 # %% [markdown]
-# *True offsets of 200 flights, one grey line each.* Nearly all stay within the blue band, which grows like the
+# *True offsets of 200 flights, a grey line each and one in black.* Nearly all stay within the blue band, which grows like the
 # square root of the time; 99.7 % should. (The lines jump where the drone turns: its side is another one then.) What gusts add,
 # and the ground station sees, is the narrow orange band. The route keeps 4.3 m to the walls. That is what $3\sigma$ has
 # become at the end of this flight. A longer one between such walls needs another way to know where it is.
