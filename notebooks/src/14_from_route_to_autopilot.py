@@ -426,7 +426,7 @@ assert 0.05 < push < 0.3
 # %% tags=["figure"]
 bands = {"3σ of gusts and GPS": (-3 * sigma, 3 * sigma), "3σ of gusts": (-3 * push + 0 * sigma, 3 * push + 0 * sigma)}
 figure = plot.lines(time, {"one of the 200 flights": offsets[0]}, "time after take-off [s]", "offset to the side [m]",
-                    bands=bands, colors={"one of the 200 flights": plot.BLACK})  # fmt: skip
+                    bands=bands, colors={"one of the 200 flights": plot.BLACK, "3σ of gusts": plot.ORANGE})  # fmt: skip
 figure.axes[0].plot(time, offsets[1:].T, color="0.3", linewidth=0.4, alpha=0.3, label="_")
 figure
 
