@@ -40,6 +40,7 @@ from uavlab.planners.least_risk import least_risk, pareto_front
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, reference_campus
 from uavlab.vehicle import RISK_QUADROTOR
 
+# %%
 COLORS = {
     "shortest": plot.BLACK, "shortest, tie-break": plot.BLACK, "shortest, least risky": plot.BLUE,
     "shortest, riskiest": plot.ORANGE, "J0": plot.PINK, "J0: length and threat": plot.PINK, "Pareto front": plot.SKY,

@@ -33,6 +33,7 @@ from uavlab.city import City, table1_city
 from uavlab.planners import astar, penalty_zone, potential_field, potential_forces, repulsion, shortcut
 from uavlab.vehicle import LIGHT_QUADROTOR
 
+# %%
 COLORS = {
     "potential field, lattice": plot.ORANGE, "potential field, continuous": plot.YELLOW, "flight": plot.BLACK,
     "out of the notch": plot.ORANGE, "is trapped": plot.ORANGE, "arrives": plot.SKY, "start of Fig. 12": plot.BLACK,

@@ -253,6 +253,7 @@ def show_scent(route, generation, title, axes):
                    norm=SCENT, title=title, colors=COLORS, axes=axes)  # fmt: skip
 
 
+# %%
 def show_generation(generation):
     """The scent of both colonies after some generations."""
     figure, panels = plot.new_panels(1, 2, share="y", width=8.6, height=3.2)
