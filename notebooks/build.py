@@ -29,7 +29,7 @@ SECONDS_PER_CELL = 300
 
 def main() -> int:
     command = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    command.add_argument("names", nargs="*", help="only these, as in 06_astar; default: all that are stale")
+    command.add_argument("names", nargs="*", help="only these, as in 05_astar; default: all that are stale")
     command.add_argument("--all", action="store_true", help="run all of them, stale or not")
     command.add_argument("--check", action="store_true", help="only say what is stale; exit 1 if anything is")
     command.add_argument("--html", action="store_true", help="write pages that work offline to notebooks/html/")

@@ -227,7 +227,7 @@ def test_heights_of_a_file_are_found_where_one_says(tmp_path, town, capsys):
         "property": ["--height", "roof", "--default-height", "40"],
         "storeys": ["--height", "levels"],
         "higher storeys": ["--height", "levels", "--storey-height", "5"],
-        "one": ["--height", "12.5"],
+        "one": ["--height", "13.5"],
     }.items():
         page = page_of(tmp_path, "--city", file, "--crs", "local", "--cell", "4", *options)
         roofs[name] = rows_of(page)["city"].split(" voxels")[0]

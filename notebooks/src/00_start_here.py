@@ -157,7 +157,7 @@ assert report.feasible
 
 # %% [markdown]
 # Where the curve comes from, and why "curvature below 1", as two of the papers ask, says nothing about 16 m/s:
-# [11 B-splines and feasibility](11_bsplines_and_feasibility.ipynb).
+# [12 B-splines and feasibility](12_bsplines_and_feasibility.ipynb).
 #
 # ## Flown, five hundred times
 #
@@ -188,7 +188,7 @@ scene.show(city, flights={"safe curve": arrival, "shortest route": crash}, safe_
 
 # %% [markdown]
 # What flies here, which planners survive which gusts, and what "3σ" is worth over a whole flight:
-# [12 flying in gusts](12_flying_in_gusts.ipynb).
+# [13 flying in gusts](13_flying_in_gusts.ipynb).
 #
 # ## Over people
 #
@@ -213,7 +213,7 @@ scene.show(campus.city, around, {"safest of the shortest": across}, risk=campus,
 
 # %% [markdown]
 # Bright ground is where a fall would cost most, on a logarithmic scale. How such a map is made, what its numbers mean
-# and whether the papers' claims about it hold: [05 risk maps](05_risk_maps.ipynb).
+# and whether the papers' claims about it hold: [08 risk maps](08_risk_maps.ipynb).
 #
 # ## Your turn
 #
@@ -237,14 +237,14 @@ except ValueError as error:
 # | [02 the Pauta criterion](02_pauta.ipynb) | How far is "far enough", on one axis, in space, over a flight? |
 # | [03 prediction](03_predicting_the_disturbance.ipynb) | How well can a model foresee it? |
 # | [04 cities](04_cities.ipynb) | What does a planner see of a city, and what does the resolution cost? |
-# | [05 risk maps](05_risk_maps.ipynb) | Whom does a falling UAV hit, and what does it cost to fly around them? |
-# | [06 A*](06_astar.ipynb) | Why is A* exact, which estimate is best, and what is wrong with REPARE's Eq. 13? |
-# | [07 potential field](07_potential_field.ipynb) | What if the goal just pulls and the walls push? |
-# | [08 REPARE](08_repare.ipynb) | How should the weather change the route, and what beats the paper's planner? |
-# | [09 ant colony](09_ant_colony.ipynb) | Can ants find the route of least risk, and how far from it do they end? |
-# | [10 swarms and beetles](10_particle_swarm_and_beetles.ipynb) | And swarms? What decides, if not the algorithm? |
-# | [11 B-splines](11_bsplines_and_feasibility.ipynb) | What does a UAV fly of a list of voxels, and can it? |
-# | [12 flying in gusts](12_flying_in_gusts.ipynb) | Which planner's route survives the wind, and how sure is that? |
+# | [05 A*](05_astar.ipynb) | Why is A* exact, which estimate is best, and what is wrong with REPARE's Eq. 13? |
+# | [06 potential field](06_potential_field.ipynb) | What if the goal just pulls and the walls push? |
+# | [07 REPARE](07_repare.ipynb) | How should the weather change the route, and what beats the paper's planner? |
+# | [08 risk maps](08_risk_maps.ipynb) | Whom does a falling UAV hit, and what does it cost to fly around them? |
+# | [10 ant colony](10_ant_colony.ipynb) | Can ants find the route of least risk, and how far from it do they end? |
+# | [11 swarms and beetles](11_particle_swarm_and_beetles.ipynb) | And swarms? What decides, if not the algorithm? |
+# | [12 B-splines](12_bsplines_and_feasibility.ipynb) | What does a UAV fly of a list of voxels, and can it? |
+# | [13 flying in gusts](13_flying_in_gusts.ipynb) | Which planner's route survives the wind, and how sure is that? |
 # | [14 from route to autopilot](14_from_route_to_autopilot.ipynb) | How does a route get into an autopilot, and does it fly it? |
 #
 # All but this one end with exercises (folder `exercises`); `uavlab.exercises.check` tells you whether an answer is

@@ -541,7 +541,7 @@ figure
 # On slower flights it is grounded in a few more: 8 against 1 near the ground, 52 against 5 or 17 at 60 m. But 1.1 kg
 # are grounded in every hour of the year. What decides on the hours is the speed asked for. At 5 m/s near the ground one
 # hour in the year is too windy (0.01 %), at 10 m/s in 60 m height 650 are (7.4 %). These are hourly means over an open
-# airfield. Between buildings it is calmer on average and rougher at corners; notebook 12 flies there.
+# airfield. Between buildings it is calmer on average and rougher at corners; notebook 13 flies there.
 #
 # ## What the paper says, what we find
 

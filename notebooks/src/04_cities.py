@@ -562,8 +562,8 @@ figure
 # "no way". That is too careful, since a way exists. But no route hits a wall. At 0.5 m both rules find it. So when a
 # planner finds no way through a narrow street, try a smaller cell before you believe it.
 #
-# Nor is the thin wall the only danger. A route of straight legs in any direction, as `shortcut` makes it ([06
-# A\*](06_astar.ipynb)), passes voxels anywhere, not only through their centres. By centres a wall may reach into a free
+# Nor is the thin wall the only danger. A route of straight legs in any direction, as `shortcut` makes it ([05
+# A\*](05_astar.ipynb)), passes voxels anywhere, not only through their centres. By centres a wall may reach into a free
 # voxel, almost to its middle. A leg through that voxel can cut the corner or the roof of even a thick building. By
 # touch a free voxel holds no part of any building. A leg that stays in free voxels therefore meets no wall. We check 50
 # routes between Table 1's buildings, ten on each of five random grids, every 0.1 m:
@@ -725,7 +725,7 @@ plot.section(town, 11.0, label="clearance [m]; yellow: the ground, 11 m below, i
 # files are read by touch.
 #
 # The courtyards are there. A flight at 11 m from one to another has to climb over the roofs. A\* with 3.5 m of
-# clearance, then the straight lines of `shortcut` ([06 A*](06_astar.ipynb) explains both):
+# clearance, then the straight lines of `shortcut` ([05 A*](05_astar.ipynb) explains both):
 
 # %%
 # NBVAL_CHECK_OUTPUT
@@ -972,5 +972,5 @@ assert all(fine.occupied.size == 8 * rough.occupied.size for rough, fine in pair
 # Three exercises: from a code back to its voxel, the distance from any point to a voxel, and how much clearance an
 # alley keeps on the most unlucky grid: [exercises](exercises/04_cities_exercises.ipynb).
 #
-# Next: [06 A*](06_astar.ipynb) finds the cheapest way through these voxels, and shows what REPARE's Eqs 11-13 do with
+# Next: [05 A*](05_astar.ipynb) finds the cheapest way through these voxels, and shows what REPARE's Eqs 11-13 do with
 # the ring's penalty.

@@ -19,7 +19,7 @@
 # | | |
 # |---|---|
 # | **You will be able to** | turn a route into a mission with a fence; say what a height is above; run a checklist before a flight; upload a mission over a radio that loses packets; fly it against a simulated vehicle and compare track and plan |
-# | **You need** | chapters [05](05_risk_maps.ipynb) (risk), [06](06_astar.ipynb) (A\*, the notch of Table 1), [11](11_bsplines_and_feasibility.ipynb) (corners) and [12](12_flying_in_gusts.ipynb) (flights, GPS); nothing of radio |
+# | **You need** | chapters [08](08_risk_maps.ipynb) (risk), [05](05_astar.ipynb) (A\*, the notch of Table 1), [12](12_bsplines_and_feasibility.ipynb) (corners) and [13](13_flying_in_gusts.ipynb) (flights, GPS); nothing of radio |
 # | **Time** | 45 minutes to read, a minute to run |
 # | **Paper** | RISK-ACO, section 4, Figs 13 to 15 |
 #
@@ -64,7 +64,7 @@ from uavlab.weather import Weather, Wind
 #
 # ## From metres to degrees
 #
-# Our job is a delivery: from the south-west of the campus to the roof of building 10. The campus of chapter 05 is made
+# Our job is a delivery: from the south-west of the campus to the roof of building 10. The campus of chapter 08 is made
 # up, so it has no place on Earth. We give it one. `Place` says where its corner x = y = z = 0 lies: longitude,
 # latitude, and a height.
 
@@ -146,7 +146,7 @@ def simplified(points, tolerance):
 
 
 # %% [markdown]
-# We try it on chapter 06's route out of the notch of Table 1, which hugs the walls at 3.5 m.
+# We try it on chapter 05's route out of the notch of Table 1, which hugs the walls at 3.5 m.
 
 # %%
 table1 = table1_city()
@@ -242,7 +242,7 @@ for name in ("campus.plan", "campus.waypoints"):
 # was found, what was asked for, and where. For the battery and for crashes it flies the mission 200 times in the given
 # weather.
 #
-# > **Predict first.** Chapter 05's route of least risk asks for no distance to the walls. It ends up 2.5 m from them at
+# > **Predict first.** Chapter 08's route of least risk asks for no distance to the walls. It ends up 2.5 m from them at
 # > the nearest place. We fly it 200 times at 5 m/s, in a wind of 3 m/s, with GPS that drifts. How many hit a wall? And
 # > how many if the planner is asked for 4 m?
 
@@ -550,4 +550,4 @@ with simulated_vehicle(city, campus.uav, gusty, (12.5, 17.5)) as vehicle, connec
 # long a flight may be, and a mission of your own:
 # [exercises/14_from_route_to_autopilot_exercises.ipynb](exercises/14_from_route_to_autopilot_exercises.ipynb).
 #
-# Before: [12 flying in gusts](12_flying_in_gusts.ipynb).
+# Before: [13 flying in gusts](13_flying_in_gusts.ipynb).

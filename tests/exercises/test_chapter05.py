@@ -1,162 +1,139 @@
 """Exercises of chapter 05: other ways to the answer pass; typical mistakes fail, each with a hint of its own."""
 
+import heapq
+import itertools
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
-from uavlab import exercises, risk
-from uavlab.vehicle import RISK_QUADROTOR
+from uavlab.exercises import check
 
 
-def speed_by_steps(height, mass, drag_area, air_density):
-    """The equation for V², solved step by step."""
-
-    def per_metre(_, squared):
-        return 2 * 9.81 - drag_area * air_density * squared / mass
-
-    return math.sqrt(solve_ivp(per_metre, (0.0, height), [0.0], rtol=1e-9, atol=1e-9).y[0, -1])
+def octile_of_largest_first(dx, dy, dz):
+    return math.sqrt(3) * abs(dz) + math.sqrt(2) * (abs(dy) - abs(dz)) + abs(dx) - abs(dy)
 
 
-def fatality_by_odds(energy, shelter):
-    return float(risk.impact_fatality(energy, shelter))
+def octile_without_abs(dx, dy, dz):
+    c, b, a = sorted((dx, dy, dz))
+    return math.sqrt(3) * c + math.sqrt(2) * (b - c) + a - b
 
 
-def deaths_by_voxel(rate, voxels, cell, speed):
-    """Each voxel with half of the move that leads into it and half of the one that leads out."""
-    seconds = np.linalg.norm(np.diff(voxels, axis=0), axis=1) * cell / speed
-    stay = (np.append(0, seconds) + np.append(seconds, 0)) / 2
-    return sum(rate[tuple(voxel)] * time / 3600 for voxel, time in zip(voxels, stay, strict=True))
+@pytest.mark.parametrize(
+    ("answer", "hint"),
+    [
+        (math.hypot, "the straight distance"),
+        (lambda *d: sum(map(abs, d)), "straight moves only"),
+        (lambda *d: max(map(abs, d)), "not equally long"),
+        (lambda *d: max(map(abs, d)) + (2**0.5 - 1) * sorted(map(abs, d))[1], "where is the height"),
+        (lambda *d: np.dot(sorted(map(abs, d)), (3**0.5, 2**0.5, 1)), "is left after c of them"),
+        (lambda *d: np.dot(np.diff(sorted(map(abs, d)), prepend=0), (2**0.5, 3**0.5, 1)), "which one √3"),
+        (octile_of_largest_first, "which of the three is largest"),
+        (octile_without_abs, "to the west"),
+        (lambda *d: 7.0, "you get 7.000"),
+        (lambda *d: "six", "raises TypeError"),
+    ],
+)
+def test_mistakes_with_the_octile_distance(answer, hint):
+    assert not check("05.1", answer)
+    assert hint in check("05.1", answer).hint
 
 
-ANSWERS = {"05.1": speed_by_steps, "05.2": fatality_by_odds, "05.3": deaths_by_voxel}
+def box(node, move):
+    return [tuple(np.add(node, part)) for part in itertools.product(*({0, d} for d in move))]
 
 
-@pytest.mark.parametrize("number", ANSWERS)
-def test_another_way_to_the_answer_is_right(number):
-    verdict = exercises.check(number, ANSWERS[number])
-    assert verdict, verdict
+def on_map(occupied, node, move):
+    return all(0 <= a + d < size for a, d, size in zip(node, move, occupied.shape, strict=True))
 
 
-@pytest.mark.parametrize("number", ANSWERS)
-def test_answer_without_return_is_told_so(number):
-    assert "needs a line with return" in exercises.check(number, lambda *_: None).hint
+def cuts_corners(occupied, node, move):
+    return on_map(occupied, node, move) and not occupied[tuple(np.add(node, move))]
 
 
-def test_the_other_gravity_is_right_too():
-    def fall_speed(height, mass, drag_area, air_density):
-        terminal = 2 * mass * 9.8 / (drag_area * air_density)
-        return np.sqrt(terminal * (1 - np.exp(-2 * 9.8 * height / terminal)))
-
-    assert exercises.check("05.1", fall_speed)
+def forgets_edges(occupied, node, move):
+    faces = [tuple(d if a == axis else 0 for a, d in enumerate(move)) for axis in range(3)]
+    return on_map(occupied, node, move) and not any(occupied[tuple(np.add(node, part))] for part in [*faces, move])
 
 
-def test_the_library_falls_as_fast():
-    def fall_speed(height, mass, drag_area, air_density):
-        return risk.fall_speed(
-            height, replace(RISK_QUADROTOR, mass=mass, fall_drag_area=drag_area), air_density=air_density
-        )
-
-    assert exercises.check("05.1", fall_speed)
+def wraps_around(occupied, node, move):
+    return not any(occupied[tuple(np.mod(voxel, occupied.shape))] for voxel in box(node, move))
 
 
-def fall(height, mass, drag_area, air_density, factor=1.0):
-    """The formula, with the exponent times a factor."""
-    terminal = 2 * mass * 9.81 / (drag_area * air_density)
-    return math.sqrt(terminal * (1 - math.exp(-2 * factor * 9.81 * height / terminal)))
+def falls_off(occupied, node, move):
+    return not any(occupied[voxel] for voxel in box(node, move))
 
 
-def terminal_speed(height, mass, drag_area, air_density):
-    return math.sqrt(2 * mass * 9.81 / (drag_area * air_density))
+def turned_round(occupied, node, move):
+    return on_map(occupied, node, move) and any(occupied[voxel] for voxel in box(node, move))
 
 
-def chance(energy, shelter, ratio=1e6 / 34):
-    return 1 / (1 + math.sqrt(ratio) * (34 / energy) ** (1 / (4 * shelter)))
+@pytest.mark.parametrize(
+    ("answer", "hint"),
+    [
+        (cuts_corners, "cuts corners"),
+        (forgets_edges, "you look at five of them"),
+        (wraps_around, "let the UAV leave it"),
+        (falls_off, "is the target on the map"),
+        (turned_round, "wrong way round"),
+        (lambda *case: True, "and you say True"),
+        (lambda *case: False, "and you say False"),
+    ],
+)
+def test_mistakes_with_legal_moves(answer, hint):
+    assert not check("05.2", answer)
+    assert hint in check("05.2", answer).hint
 
 
-def chance_under_one_root(energy, shelter):
-    return 1 / (1 + math.sqrt(1e6 / 34 * (34 / energy) ** (1 / (4 * shelter))))
+def search(
+    graph, start, goal, estimate, *, better=True, leak=False, early=False, greedy=False, weight=1.0, none=math.inf
+):
+    """An A* that can be broken in several ways."""
+    g, open_list = {start: 0.0}, [(estimate(start), start)]
+    closed = set()
+    while open_list:
+        f, place = heapq.heappop(open_list)
+        if place == goal:
+            return g[goal]
+        if place in closed:
+            continue
+        closed.add(place)
+        for neighbour, length in graph[place].items():
+            cost = (f if leak else g[place]) + length
+            if neighbour not in g or (better and cost < g[neighbour]):
+                g[neighbour] = cost
+                if early and neighbour == goal:
+                    return cost
+                heapq.heappush(open_list, (weight * estimate(neighbour) + (0 if greedy else cost), neighbour))
+    return none
 
 
-def in_the_open(value):
-    """Right with shelter, this below β and above it without."""
-    return lambda energy, shelter: chance(energy, shelter) if shelter > 0 else value(energy)
-
-
-def speed_in_time(height, mass, drag_area, air_density):
-    """Right at a time, but the time is that of a fall without air."""
-    terminal = terminal_speed(height, mass, drag_area, air_density)
-    return terminal * math.tanh(9.81 * math.sqrt(2 * height / 9.81) / terminal)
-
-
-def mean_rate_times_time(rate, voxels, cell, speed):
-    length = cell * np.linalg.norm(np.diff(voxels, axis=0), axis=1).sum()
-    return rate[tuple(voxels.T)].mean() * length / (3600 * speed)
-
-
-def cost(rate, voxels, cell, speed, begin=0.5, straight=False, diagonals=1.0):
-    """Deaths, with this share of each leg at the rate where it begins."""
-    lengths = np.linalg.norm(np.diff(voxels, axis=0), axis=1)
-    lengths[lengths > 1] *= diagonals
-    along = rate[tuple(voxels.T)]
-    legs = begin * along[:-1] + (1 - begin) * along[1:]
-    return float(legs @ (np.ones_like(lengths) if straight else lengths)) * cell / (3600 * speed)
-
-
-MISTAKES = [
-    ("05.1", lambda *f: fall(*f, factor=0.5), "as it is printed"),
-    ("05.1", lambda *f: fall(*f[:3], 1.0, factor=0.5), "Give your result a unit"),
-    ("05.1", lambda *f: fall(*f, factor=2.0), "more energy than gravity"),
-    ("05.1", lambda *f: math.sqrt(2 * 9.81 * f[0]), "without air"),
-    ("05.1", terminal_speed, "the terminal speed"),
-    ("05.1", speed_in_time, "the same time"),
-    ("05.1", lambda *f: fall(*f) ** 2, "the square of the speed"),
-    ("05.1", lambda *f: fall(*f[:3], 1.0), "where is the density"),
-    ("05.1", lambda *f: math.nan, "no finite number"),
-    ("05.1", lambda *f: 12.0, "you get 12.00 m/s"),
-    ("05.1", lambda *f: np.ones(3), "must be one number"),
-    ("05.2", chance_under_one_root, "the root covers the power"),
-    ("05.2", lambda e, s: 1 / (1 + math.sqrt(1e6 / 34) * (e / 34) ** (1 / (4 * s))), "which way up"),
-    ("05.2", lambda e, s: chance(e, s, (1e6 / 34) ** 2), "a root over α/β"),
-    ("05.2", lambda e, s: chance(e, s, 34 / 1e6), "which stands above"),
-    ("05.2", lambda e, s: 1 / (1 + math.sqrt(1e6 / 34) * (34 / e) ** (1 / 4 * s)), "mind the brackets"),
-    ("05.2", lambda e, s: chance(e, 1.0), "the same behind every shelter"),
-    ("05.2", lambda e, s: 0.5, "you say"),
-    ("05.2", chance, "divides by zero"),
-    ("05.2", lambda e, s: chance(e, max(s, 1e-6)), "the power grows without bound"),
-    ("05.2", in_the_open(lambda energy: None), "In the open your function returns nothing"),
-    ("05.2", in_the_open(lambda energy: 1.0), "let every blow kill"),
-    ("05.2", in_the_open(lambda energy: float(energy < 34)), "wrong way round"),
-    ("05.2", in_the_open(lambda energy: 0.0), "0 for 35 J"),
-    ("05.3", lambda rate, voxels, cell, speed: rate[tuple(voxels.T)].sum(), "the papers' sum"),
-    ("05.3", lambda r, v, c, s: r[tuple(v.T)].sum() * c / (3600 * s), "only by half"),
-    ("05.3", lambda *m: cost(*m, straight=True), "equally long"),
-    ("05.3", lambda *m: cost(*m, begin=0.0), "that a move leads to"),
-    ("05.3", lambda *m: cost(*m, begin=1.0), "where a move begins"),
-    ("05.3", mean_rate_times_time, "the mean rate"),
-    ("05.3", lambda *m: cost(*m, diagonals=2.0), "How long is a move over an edge"),
-    ("05.3", lambda *m: 2 * cost(*m), "Twice too much"),
-    ("05.3", lambda *m: 3600 * cost(*m), "the rate is per hour"),
-    ("05.3", lambda *m: 60 * cost(*m), "more than 60 seconds"),
-    ("05.3", lambda *m: cost(*m) / m[2], "lengths are in cells"),
-    ("05.3", lambda *m: cost(*m) * m[3], "Who is longer above a crowd"),
-    ("05.3", lambda *m: cost(*m) * m[3] ** 2, "the more die"),
-    ("05.3", lambda *m: cost(*m) / m[2] * 3600 * m[3], "not yet deaths"),
-    ("05.3", lambda *m: 7.0, "and you get 7"),
-    ("05.3", lambda rate, *_: rate[0, 0], "must be one number"),
-]
-
-
-@pytest.mark.parametrize(("number", "answer", "hint"), MISTAKES)
-def test_mistake_is_told_apart(number, answer, hint):
-    verdict = exercises.check(number, answer)
+@pytest.mark.parametrize(
+    ("mistake", "hint"),
+    [
+        ({"leak": True}, "no road"),
+        ({"leak": True, "better": False}, "no road"),
+        ({"better": False}, "while b still waits"),
+        ({"early": True}, "when it is taken out"),
+        ({"none": None}, "the cost is infinite"),
+        ({"greedy": True}, "In which order"),
+        ({"weight": 1.5}, "which step doesn't hold"),
+    ],
+)
+def test_mistakes_with_the_search(mistake, hint):
+    verdict = check("05.3", lambda *question: search(*question, **mistake))
     assert not verdict
     assert hint in verdict.hint
 
 
-@pytest.mark.parametrize("number", ANSWERS)
-def test_hints_differ(number):
-    hints = [exercises.check(number, answer).hint for n, answer, _ in MISTAKES if n == number]
-    assert len(set(hints)) == len(hints)
+def test_search_without_a_mistake_is_right():
+    assert check("05.3", search)
+
+
+def test_search_that_returns_nothing_is_told_so():
+    assert "returns nothing" in check("05.3", lambda *question: None).hint
+
+
+def test_the_broken_search_of_the_exercise_is_told_what_is_wrong(solutions):
+    assert solutions["search"](solutions["roads"], "harbour", "castle", solutions["left"].get) != 7
+    assert "no road" in check("05.3", solutions["search"]).hint

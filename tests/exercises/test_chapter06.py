@@ -1,139 +1,164 @@
 """Exercises of chapter 06: other ways to the answer pass; typical mistakes fail, each with a hint of its own."""
 
-import heapq
-import itertools
 import math
 
 import numpy as np
 import pytest
+from solved import EXERCISES
 
 from uavlab.exercises import check
 
-
-def octile_of_largest_first(dx, dy, dz):
-    return math.sqrt(3) * abs(dz) + math.sqrt(2) * (abs(dy) - abs(dz)) + abs(dx) - abs(dy)
+NUMBERS = ("06.1", "06.2", "06.3")
 
 
-def octile_without_abs(dx, dy, dz):
-    c, b, a = sorted((dx, dy, dz))
-    return math.sqrt(3) * c + math.sqrt(2) * (b - c) + a - b
+@pytest.mark.parametrize("number", NUMBERS)
+def test_solution_passes_and_the_blank_fails(number, solutions, blank):
+    assert check(number, solutions[EXERCISES[number]])
+    assert "no answer yet" in check(number, blank).hint
+    assert "no answer yet" in check(number, None).hint
+
+
+def push(point, low, push, reach, *, middle=None, beyond=False, times=lambda d: 1.0):
+    """A push of a voxel that can be broken in several ways."""
+    nearest = np.clip(point, low, np.add(low, 1)) if middle is None else np.add(low, middle)
+    away = point - nearest
+    distance = np.linalg.norm(away)
+    if distance > reach and not beyond:
+        return np.zeros(3)
+    return push * (1 / distance - 1 / reach) / distance**2 * times(distance) * away / distance
+
+
+def as_a_number(*question):
+    return np.linalg.norm(push(*question))
+
+
+def number_beyond(*question):
+    force = push(*question)
+    return force if force.any() else 0
+
+
+def nothing_beyond(*question):
+    force = push(*question)
+    return force if force.any() else None
 
 
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (math.hypot, "the straight distance"),
-        (lambda *d: sum(map(abs, d)), "straight moves only"),
-        (lambda *d: max(map(abs, d)), "not equally long"),
-        (lambda *d: max(map(abs, d)) + (2**0.5 - 1) * sorted(map(abs, d))[1], "where is the height"),
-        (lambda *d: np.dot(sorted(map(abs, d)), (3**0.5, 2**0.5, 1)), "is left after c of them"),
-        (lambda *d: np.dot(np.diff(sorted(map(abs, d)), prepend=0), (2**0.5, 3**0.5, 1)), "which one √3"),
-        (octile_of_largest_first, "which of the three is largest"),
-        (octile_without_abs, "to the west"),
-        (lambda *d: 7.0, "you get 7.000"),
-        (lambda *d: "six", "raises TypeError"),
+        (as_a_number, "A size can't steer"),
+        (number_beyond, "no force is a vector, too"),
+        (nothing_beyond, "a vector of zeros"),
+        (lambda *q: push(*q)[:2], r"has the shape (2,)"),
+        (lambda *q: -push(*q), "your voxel attracts. From where to where"),
+        (lambda *q: push(*q, times=lambda d: d), "what is a direction's length"),
+        (lambda *q: push(*q, beyond=True), "Beyond it your voxel attracts"),
+        (lambda *q: push(*q, beyond=True) if push(*q).any() else np.ones(3), "How large is the force beyond it"),
+        (lambda *q: push(*q, middle=0.5), "from the voxel's centre"),
+        (lambda *q: push(*q, middle=0.5, beyond=True), "from the voxel's centre"),
+        (lambda *q: push(*q, middle=0.0), "lowest corner"),
+        (lambda *q: push(*q, middle=0.0, beyond=True), "lowest corner"),
+        (lambda *q: push(*q, times=lambda d: d**2 * (1 / d - 1 / q[3]) / 2), "size of the potential"),
+        (lambda *q: 2 * push(*q), "Go through it by hand"),
+        (lambda *q: "east", "You return a number"),
+        (lambda *q: q[9], "raises IndexError"),
     ],
 )
-def test_mistakes_with_the_octile_distance(answer, hint):
+def test_mistakes_with_the_push_of_a_voxel(answer, hint):
     assert not check("06.1", answer)
     assert hint in check("06.1", answer).hint
 
 
-def box(node, move):
-    return [tuple(np.add(node, part)) for part in itertools.product(*({0, d} for d in move))]
+def by_newton(pull, push, reach):
+    """Another way to the same distance: Newton from near the wall, where the push is convex."""
+    distance = 1e-3
+    for _ in range(200):
+        excess = push * (1 / distance - 1 / reach) / distance**2 - pull
+        distance -= excess / (push * (-3 / distance**4 + 2 / (reach * distance**3)))
+    return distance
 
 
-def on_map(occupied, node, move):
-    return all(0 <= a + d < size for a, d, size in zip(node, move, occupied.shape, strict=True))
+def by_cubic(pull, push, reach):
+    """The roots of pull·D³ + (k/R)·D − k."""
+    roots = np.roots([pull, 0, push / reach, -push])
+    return float(roots[np.isreal(roots)].real[0])
 
 
-def cuts_corners(occupied, node, move):
-    return on_map(occupied, node, move) and not occupied[tuple(np.add(node, move))]
-
-
-def forgets_edges(occupied, node, move):
-    faces = [tuple(d if a == axis else 0 for a, d in enumerate(move)) for axis in range(3)]
-    return on_map(occupied, node, move) and not any(occupied[tuple(np.add(node, part))] for part in [*faces, move])
-
-
-def wraps_around(occupied, node, move):
-    return not any(occupied[tuple(np.mod(voxel, occupied.shape))] for voxel in box(node, move))
-
-
-def falls_off(occupied, node, move):
-    return not any(occupied[voxel] for voxel in box(node, move))
-
-
-def turned_round(occupied, node, move):
-    return on_map(occupied, node, move) and any(occupied[voxel] for voxel in box(node, move))
+@pytest.mark.parametrize("answer", [by_newton, by_cubic])
+def test_other_ways_to_the_balance(answer):
+    assert check("06.2", answer)
 
 
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (cuts_corners, "cuts corners"),
-        (forgets_edges, "you look at five of them"),
-        (wraps_around, "let the UAV leave it"),
-        (falls_off, "is the target on the map"),
-        (turned_round, "wrong way round"),
-        (lambda *case: True, "and you say True"),
-        (lambda *case: False, "and you say False"),
+        (lambda pull, push, reach: (push / pull) ** (1 / 3), "what does 1/R take away"),
+        (lambda pull, push, reach: by_cubic(1, push, reach), "doesn't depend on the pull"),
+        (lambda pull, push, reach: 1 / (math.sqrt(2 * pull / push) + 1 / reach), "their slopes"),
+        (lambda pull, push, reach: 1 / (pull / push + 1 / reach), "Which factor of the push is missing"),
+        (lambda pull, push, reach: reach, "At its reach the push is 0"),
+        (lambda pull, push, reach: -1.0, "Between which two must it lie"),
+        (lambda pull, push, reach: round(by_cubic(pull, push, reach), 3), "It has to be more exact"),
+        (lambda pull, push, reach: 1.0, "too much to cancel the pull"),
+        (lambda pull, push, reach: 2.0, "too little to cancel the pull"),
+        (lambda pull, push, reach: None, "returns nothing"),
+        (lambda pull, push, reach: [1.0, 2.0], "The answer is one number"),
     ],
 )
-def test_mistakes_with_legal_moves(answer, hint):
+def test_mistakes_with_the_balance(answer, hint):
     assert not check("06.2", answer)
     assert hint in check("06.2", answer).hint
 
 
-def search(
-    graph, start, goal, estimate, *, better=True, leak=False, early=False, greedy=False, weight=1.0, none=math.inf
-):
-    """An A* that can be broken in several ways."""
-    g, open_list = {start: 0.0}, [(estimate(start), start)]
-    closed = set()
-    while open_list:
-        f, place = heapq.heappop(open_list)
-        if place == goal:
-            return g[goal]
-        if place in closed:
-            continue
-        closed.add(place)
-        for neighbour, length in graph[place].items():
-            cost = (f if leak else g[place]) + length
-            if neighbour not in g or (better and cost < g[neighbour]):
-                g[neighbour] = cost
-                if early and neighbour == goal:
-                    return cost
-                heapq.heappush(open_list, (weight * estimate(neighbour) + (0 if greedy else cost), neighbour))
-    return none
+def along(force, move):
+    return np.dot(force, move) / np.linalg.norm(move)
+
+
+def by_angle(force, moves):
+    angles = [math.acos(min(1.0, along(force, move) / np.linalg.norm(force))) for move in moves]
+    return moves[int(np.argmin(angles))] if angles and min(angles) < math.pi / 2 - 1e-12 else None
+
+
+def best(force, moves, measure=along, *, least=0.0):
+    """A choice among moves that can be broken in several ways."""
+    return max(
+        (move for move in moves if measure(force, move) > least), key=lambda move: measure(force, move), default=None
+    )
+
+
+def downhill(force, moves):
+    return next((move for move in moves if along(force, move) > 0), None)
+
+
+def backwards(force, moves):
+    return best(-np.asarray(force), moves)
+
+
+def tip(force, moves):
+    return min(moves, key=lambda move: np.linalg.norm(np.subtract(force, move)))
+
+
+@pytest.mark.parametrize("answer", [by_angle, best, lambda force, moves: (m := best(force, moves)) and np.array(m)])
+def test_other_ways_to_the_best_move(answer):
+    assert check("06.3", answer)
 
 
 @pytest.mark.parametrize(
-    ("mistake", "hint"),
+    ("answer", "hint"),
     [
-        ({"leak": True}, "no road"),
-        ({"leak": True, "better": False}, "no road"),
-        ({"better": False}, "while b still waits"),
-        ({"early": True}, "when it is taken out"),
-        ({"none": None}, "the cost is infinite"),
-        ({"greedy": True}, "In which order"),
-        ({"weight": 1.5}, "which step doesn't hold"),
+        (lambda force, moves: best(force, moves, np.dot), "largest scalar product"),
+        (lambda force, moves: best(force, moves, lambda f, m: np.dot(f, m) / np.dot(m, m)), "squared length"),
+        (backwards, "uphill"),
+        (tip, "only its direction should count"),
+        (downhill, "the first move that leads downhill"),
+        (lambda force, moves: max(moves, key=lambda move: along(force, move), default=None), "bottom of a pond"),
+        (lambda force, moves: best(force, moves, least=-1e-9), "below 90°"),
+        (lambda force, moves: best(force, moves) if moves else (0, 0, 0), "there is none to return"),
+        (lambda force, moves: tuple(np.sign(force).astype(int).tolist()), "not among the legal moves"),
+        (lambda force, moves: None, "always returns None"),
+        (lambda force, moves: moves[0], "The smallest angle is"),
+        (lambda force, moves: best(np.round(force), moves), "The smallest angle is"),
     ],
 )
-def test_mistakes_with_the_search(mistake, hint):
-    verdict = check("06.3", lambda *question: search(*question, **mistake))
-    assert not verdict
-    assert hint in verdict.hint
-
-
-def test_search_without_a_mistake_is_right():
-    assert check("06.3", search)
-
-
-def test_search_that_returns_nothing_is_told_so():
-    assert "returns nothing" in check("06.3", lambda *question: None).hint
-
-
-def test_the_broken_search_of_the_exercise_is_told_what_is_wrong(solutions):
-    assert solutions["search"](solutions["roads"], "harbour", "castle", solutions["left"].get) != 7
-    assert "no road" in check("06.3", solutions["search"]).hint
+def test_mistakes_with_the_best_move(answer, hint):
+    assert not check("06.3", answer)
+    assert hint in check("06.3", answer).hint

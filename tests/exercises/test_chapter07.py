@@ -4,161 +4,145 @@ import math
 
 import numpy as np
 import pytest
-from solved import EXERCISES
 
 from uavlab.exercises import check
-
-NUMBERS = ("07.1", "07.2", "07.3")
-
-
-@pytest.mark.parametrize("number", NUMBERS)
-def test_solution_passes_and_the_blank_fails(number, solutions, blank):
-    assert check(number, solutions[EXERCISES[number]])
-    assert "no answer yet" in check(number, blank).hint
-    assert "no answer yet" in check(number, None).hint
+from uavlab.resilience import DISTURBANCES, LOADS
 
 
-def push(point, low, push, reach, *, middle=None, beyond=False, times=lambda d: 1.0):
-    """A push of a voxel that can be broken in several ways."""
-    nearest = np.clip(point, low, np.add(low, 1)) if middle is None else np.add(low, middle)
-    away = point - nearest
-    distance = np.linalg.norm(away)
-    if distance > reach and not beyond:
-        return np.zeros(3)
-    return push * (1 / distance - 1 / reach) / distance**2 * times(distance) * away / distance
+def price(distance, keep, wind, normal, load, *, blown=None, push=None, scale=2.0, one=1.0, open_air=1.0, zone=True):
+    """The price of a metre, which can be broken in several ways."""
+    if zone and distance >= keep:
+        return 1.0
+    force = keep**3 / 4 * (1 / distance - 1 / keep) / distance**2 if push is None else push(distance, keep)
+    gust = max(0.0, -np.dot(wind, normal)) if blown is None else blown(np.array(wind), np.array(normal))
+    return open_air + scale * (one + force + gust + load)
 
 
-def as_a_number(*question):
-    return np.linalg.norm(push(*question))
-
-
-def number_beyond(*question):
-    force = push(*question)
-    return force if force.any() else 0
-
-
-def nothing_beyond(*question):
-    force = push(*question)
-    return force if force.any() else None
+def by_size(distance, keep, wind, normal, load):
+    force = keep**3 / 4 * (1 / distance - 1 / keep) / distance**2
+    size = np.linalg.norm(force * np.array(normal) + wind)
+    return 1 + 2 * (1 + load + size) if distance < keep else 1.0
 
 
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (as_a_number, "A size can't steer"),
-        (number_beyond, "no force is a vector, too"),
-        (nothing_beyond, "a vector of zeros"),
-        (lambda *q: push(*q)[:2], r"has the shape (2,)"),
-        (lambda *q: -push(*q), "your voxel attracts. From where to where"),
-        (lambda *q: push(*q, times=lambda d: d), "what is a direction's length"),
-        (lambda *q: push(*q, beyond=True), "Beyond it your voxel attracts"),
-        (lambda *q: push(*q, beyond=True) if push(*q).any() else np.ones(3), "How large is the force beyond it"),
-        (lambda *q: push(*q, middle=0.5), "from the voxel's centre"),
-        (lambda *q: push(*q, middle=0.5, beyond=True), "from the voxel's centre"),
-        (lambda *q: push(*q, middle=0.0), "lowest corner"),
-        (lambda *q: push(*q, middle=0.0, beyond=True), "lowest corner"),
-        (lambda *q: push(*q, times=lambda d: d**2 * (1 / d - 1 / q[3]) / 2), "size of the potential"),
-        (lambda *q: 2 * push(*q), "Go through it by hand"),
-        (lambda *q: "east", "You return a number"),
-        (lambda *q: q[9], "raises IndexError"),
+        (lambda *case: price(*case, open_air=0.0), "That is ω"),
+        (lambda *case: price(*case, one=0.0), "doesn't depend on anything"),
+        (lambda *case: price(*case[:4], 0.0), "The load is missing"),
+        (lambda *case: price(*case, scale=1.0), "weighed against the open"),
+        (lambda *case: price(*case, push=lambda d, k: k**3 / 4 * (1 / d - 1 / k)), "another factor"),
+        (lambda *case: price(*case, push=lambda d, k: (1 / d - 1 / k) / d**2), "k_rep for 1"),
+        (lambda *case: price(*case, zone=False), "what is O_risk there"),
+        (lambda *case: price(*case, blown=lambda w, n: max(0.0, w @ n)), "Where does n point"),
+        (lambda *case: price(*case, blown=lambda w, n: -w @ n), "metre cheaper"),
+        (lambda *case: price(*case, blown=lambda w, n: abs(w @ n)), "Only one of them"),
+        (lambda *case: price(*case, blown=lambda w, n: np.linalg.norm(w)), "the whole wind"),
+        (lambda *case: price(*case, blown=lambda w, n: 0.0), "where is F_dist"),
+        (lambda *case: price(*case, blown=lambda w, n: (w @ n) ** 2), "which part of it"),
+        (by_size, "way 2"),
+        (lambda *case: 2.0, "you get 2.000"),
+        (lambda *case: None, "returns nothing"),
     ],
 )
-def test_mistakes_with_the_push_of_a_voxel(answer, hint):
+def test_mistakes_with_the_price(answer, hint):
     assert not check("07.1", answer)
     assert hint in check("07.1", answer).hint
 
 
-def by_newton(pull, push, reach):
-    """Another way to the same distance: Newton from near the wall, where the push is convex."""
-    distance = 1e-3
-    for _ in range(200):
-        excess = push * (1 / distance - 1 / reach) / distance**2 - pull
-        distance -= excess / (push * (-3 / distance**4 + 2 / (reach * distance**3)))
-    return distance
+def test_price_written_otherwise_is_right():
+    assert check("07.1", price)
 
 
-def by_cubic(pull, push, reach):
-    """The roots of pull·D³ + (k/R)·D − k."""
-    roots = np.roots([pull, 0, push / reach, -push])
-    return float(roots[np.isreal(roots)].real[0])
+RIGHT = ({"dead": 0, "light": 2, "moderate": 8, "heavy": 10}, {"none": 0, "mild": 6, "moderate": 10, "heavy": 14})
 
 
-@pytest.mark.parametrize("answer", [by_newton, by_cubic])
-def test_other_ways_to_the_balance(answer):
-    assert check("07.2", answer)
+def test_another_score_is_right():
+    loads = {"dead": 0, "light": 1, "moderate": 4, "heavy": 5}
+    disturbances = {"none": 0, "mild": 3, "moderate": 5, "heavy": 7}
+    assert check("07.2", lambda: (loads, disturbances, (2.5, 4.5, 7.5, 10.5)))
 
 
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (lambda pull, push, reach: (push / pull) ** (1 / 3), "what does 1/R take away"),
-        (lambda pull, push, reach: by_cubic(1, push, reach), "doesn't depend on the pull"),
-        (lambda pull, push, reach: 1 / (math.sqrt(2 * pull / push) + 1 / reach), "their slopes"),
-        (lambda pull, push, reach: 1 / (pull / push + 1 / reach), "Which factor of the push is missing"),
-        (lambda pull, push, reach: reach, "At its reach the push is 0"),
-        (lambda pull, push, reach: -1.0, "Between which two must it lie"),
-        (lambda pull, push, reach: round(by_cubic(pull, push, reach), 3), "It has to be more exact"),
-        (lambda pull, push, reach: 1.0, "too much to cancel the pull"),
-        (lambda pull, push, reach: 2.0, "too little to cancel the pull"),
-        (lambda pull, push, reach: None, "returns nothing"),
-        (lambda pull, push, reach: [1.0, 2.0], "The answer is one number"),
+        ((*RIGHT, (5, 9, 15)), "four thresholds"),
+        ((*RIGHT, (9, 5, 15, 21)), "must rise"),
+        ((*RIGHT, (5, 9, 15, 23)), "15 of 16"),
+        ((dict.fromkeys(LOADS, 0), dict.fromkeys(DISTURBANCES, 0), (5, 9, 15, 21)), "Table 3 has"),
+        (({name: i for i, name in enumerate(LOADS)}, RIGHT[1], (5, 9, 15, 21)), "of 16 are right"),
+        (({"dead": 0, "light": 2, "moderate": 8}, RIGHT[1], (5, 9, 15, 21)), "load 'heavy'"),
+        ((RIGHT[0], {"none": 0, "mild": 6, "heavy": 14}, (5, 9, 15, 21)), "disturbance 'moderate'"),
+        (RIGHT, "three parts"),
+        (None, "returns nothing"),
     ],
 )
-def test_mistakes_with_the_balance(answer, hint):
-    assert not check("07.2", answer)
-    assert hint in check("07.2", answer).hint
+def test_mistakes_with_the_score(answer, hint):
+    assert not check("07.2", lambda: answer)
+    assert hint in check("07.2", lambda: answer).hint
 
 
-def along(force, move):
-    return np.dot(force, move) / np.linalg.norm(move)
+def walk(observed, predicted, step, hold, release, *, mistake=""):
+    """The boundary as in the exercise, which can be broken in several ways."""
+    boundary, calm, history = predicted, 0, []
+    for offset in observed:
+        level = boundary if mistake == "boundary" else boundary - step
+        if offset < (1.0 if mistake == "release" else release) * level:
+            calm += 1
+        elif mistake != "not in a row":
+            calm = 0
+        if offset > boundary:
+            calm = 0
+            boundary += step
+            while mistake != "one step" and boundary < offset:
+                boundary += step
+        elif mistake != "never" and calm >= (1 if mistake == "flutter" else hold):
+            calm = calm if mistake == "not fresh" else 0
+            lower = predicted if mistake == "at once" else boundary - step
+            boundary = lower if mistake == "no floor" else max(lower, predicted)
+        history.append(boundary)
+    return history
 
 
-def by_angle(force, moves):
-    angles = [math.acos(min(1.0, along(force, move) / np.linalg.norm(force))) for move in moves]
-    return moves[int(np.argmin(angles))] if angles and min(angles) < math.pi / 2 - 1e-12 else None
-
-
-def best(force, moves, measure=along, *, least=0.0):
-    """A choice among moves that can be broken in several ways."""
-    return max(
-        (move for move in moves if measure(force, move) > least), key=lambda move: measure(force, move), default=None
-    )
-
-
-def downhill(force, moves):
-    return next((move for move in moves if along(force, move) > 0), None)
-
-
-def backwards(force, moves):
-    return best(-np.asarray(force), moves)
-
-
-def tip(force, moves):
-    return min(moves, key=lambda move: np.linalg.norm(np.subtract(force, move)))
-
-
-@pytest.mark.parametrize("answer", [by_angle, best, lambda force, moves: (m := best(force, moves)) and np.array(m)])
-def test_other_ways_to_the_best_move(answer):
-    assert check("07.3", answer)
+@pytest.mark.parametrize(
+    ("mistake", "hint"),
+    [
+        ("never", "never comes down"),
+        ("flutter", "fluttering"),
+        ("one step", "still below it"),
+        ("no floor", "below what was predicted"),
+        ("at once", "one step at a time"),
+        ("boundary", "push it up again"),
+        ("release", "what is `release` for"),
+        ("not in a row", "have to follow each other"),
+        ("not fresh", "the next follows at once"),
+    ],
+)
+def test_mistakes_with_the_boundary(mistake, hint):
+    verdict = check("07.3", lambda *case: walk(*case, mistake=mistake))
+    assert not verdict
+    assert hint in verdict.hint
 
 
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (lambda force, moves: best(force, moves, np.dot), "largest scalar product"),
-        (lambda force, moves: best(force, moves, lambda f, m: np.dot(f, m) / np.dot(m, m)), "squared length"),
-        (backwards, "uphill"),
-        (tip, "only its direction should count"),
-        (downhill, "the first move that leads downhill"),
-        (lambda force, moves: max(moves, key=lambda move: along(force, move), default=None), "bottom of a pond"),
-        (lambda force, moves: best(force, moves, least=-1e-9), "below 90°"),
-        (lambda force, moves: best(force, moves) if moves else (0, 0, 0), "there is none to return"),
-        (lambda force, moves: tuple(np.sign(force).astype(int).tolist()), "not among the legal moves"),
-        (lambda force, moves: None, "always returns None"),
-        (lambda force, moves: moves[0], "The smallest angle is"),
-        (lambda force, moves: best(np.round(force), moves), "The smallest angle is"),
+        (lambda observed, *rest: None, "returns nothing"),
+        (lambda observed, *rest: [2.0], "you return 1"),
+        (lambda observed, *rest: [2.0] * len(observed), "should rise"),
+        (lambda observed, *rest: [9.0] * len(observed), "should not be 9 m"),
+        (lambda observed, *rest: math.nan, "raises TypeError"),
     ],
 )
-def test_mistakes_with_the_best_move(answer, hint):
+def test_other_answers_for_the_boundary(answer, hint):
     assert not check("07.3", answer)
     assert hint in check("07.3", answer).hint
+
+
+def test_boundary_written_otherwise_is_right():
+    assert check("07.3", walk)
+
+
+def test_solutions_agree_with_the_example(solutions):
+    found = solutions["boundaries"]([1, 2.7, 1, 1, 1, 1], 2, 0.5, 3, 0.8)
+    assert found == [2, 3, 3, 3, 2.5, 2.5]

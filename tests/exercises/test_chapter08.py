@@ -1,148 +1,162 @@
 """Exercises of chapter 08: other ways to the answer pass; typical mistakes fail, each with a hint of its own."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
-from uavlab.exercises import check
-from uavlab.resilience import DISTURBANCES, LOADS
-
-
-def price(distance, keep, wind, normal, load, *, blown=None, push=None, scale=2.0, one=1.0, open_air=1.0, zone=True):
-    """The price of a metre, which can be broken in several ways."""
-    if zone and distance >= keep:
-        return 1.0
-    force = keep**3 / 4 * (1 / distance - 1 / keep) / distance**2 if push is None else push(distance, keep)
-    gust = max(0.0, -np.dot(wind, normal)) if blown is None else blown(np.array(wind), np.array(normal))
-    return open_air + scale * (one + force + gust + load)
+from uavlab import exercises, risk
+from uavlab.vehicle import RISK_QUADROTOR
 
 
-def by_size(distance, keep, wind, normal, load):
-    force = keep**3 / 4 * (1 / distance - 1 / keep) / distance**2
-    size = np.linalg.norm(force * np.array(normal) + wind)
-    return 1 + 2 * (1 + load + size) if distance < keep else 1.0
+def speed_by_steps(height, mass, drag_area, air_density):
+    """The equation for V², solved step by step."""
+
+    def per_metre(_, squared):
+        return 2 * 9.81 - drag_area * air_density * squared / mass
+
+    return math.sqrt(solve_ivp(per_metre, (0.0, height), [0.0], rtol=1e-9, atol=1e-9).y[0, -1])
 
 
-@pytest.mark.parametrize(
-    ("answer", "hint"),
-    [
-        (lambda *case: price(*case, open_air=0.0), "That is ω"),
-        (lambda *case: price(*case, one=0.0), "doesn't depend on anything"),
-        (lambda *case: price(*case[:4], 0.0), "The load is missing"),
-        (lambda *case: price(*case, scale=1.0), "weighed against the open"),
-        (lambda *case: price(*case, push=lambda d, k: k**3 / 4 * (1 / d - 1 / k)), "another factor"),
-        (lambda *case: price(*case, push=lambda d, k: (1 / d - 1 / k) / d**2), "k_rep for 1"),
-        (lambda *case: price(*case, zone=False), "what is O_risk there"),
-        (lambda *case: price(*case, blown=lambda w, n: max(0.0, w @ n)), "Where does n point"),
-        (lambda *case: price(*case, blown=lambda w, n: -w @ n), "metre cheaper"),
-        (lambda *case: price(*case, blown=lambda w, n: abs(w @ n)), "Only one of them"),
-        (lambda *case: price(*case, blown=lambda w, n: np.linalg.norm(w)), "the whole wind"),
-        (lambda *case: price(*case, blown=lambda w, n: 0.0), "where is F_dist"),
-        (lambda *case: price(*case, blown=lambda w, n: (w @ n) ** 2), "which part of it"),
-        (by_size, "way 2"),
-        (lambda *case: 2.0, "you get 2.000"),
-        (lambda *case: None, "returns nothing"),
-    ],
-)
-def test_mistakes_with_the_price(answer, hint):
-    assert not check("08.1", answer)
-    assert hint in check("08.1", answer).hint
+def fatality_by_odds(energy, shelter):
+    return float(risk.impact_fatality(energy, shelter))
 
 
-def test_price_written_otherwise_is_right():
-    assert check("08.1", price)
+def deaths_by_voxel(rate, voxels, cell, speed):
+    """Each voxel with half of the move that leads into it and half of the one that leads out."""
+    seconds = np.linalg.norm(np.diff(voxels, axis=0), axis=1) * cell / speed
+    stay = (np.append(0, seconds) + np.append(seconds, 0)) / 2
+    return sum(rate[tuple(voxel)] * time / 3600 for voxel, time in zip(voxels, stay, strict=True))
 
 
-RIGHT = ({"dead": 0, "light": 2, "moderate": 8, "heavy": 10}, {"none": 0, "mild": 6, "moderate": 10, "heavy": 14})
+ANSWERS = {"08.1": speed_by_steps, "08.2": fatality_by_odds, "08.3": deaths_by_voxel}
 
 
-def test_another_score_is_right():
-    loads = {"dead": 0, "light": 1, "moderate": 4, "heavy": 5}
-    disturbances = {"none": 0, "mild": 3, "moderate": 5, "heavy": 7}
-    assert check("08.2", lambda: (loads, disturbances, (2.5, 4.5, 7.5, 10.5)))
+@pytest.mark.parametrize("number", ANSWERS)
+def test_another_way_to_the_answer_is_right(number):
+    verdict = exercises.check(number, ANSWERS[number])
+    assert verdict, verdict
 
 
-@pytest.mark.parametrize(
-    ("answer", "hint"),
-    [
-        ((*RIGHT, (5, 9, 15)), "four thresholds"),
-        ((*RIGHT, (9, 5, 15, 21)), "must rise"),
-        ((*RIGHT, (5, 9, 15, 23)), "15 of 16"),
-        ((dict.fromkeys(LOADS, 0), dict.fromkeys(DISTURBANCES, 0), (5, 9, 15, 21)), "Table 3 has"),
-        (({name: i for i, name in enumerate(LOADS)}, RIGHT[1], (5, 9, 15, 21)), "of 16 are right"),
-        (({"dead": 0, "light": 2, "moderate": 8}, RIGHT[1], (5, 9, 15, 21)), "load 'heavy'"),
-        ((RIGHT[0], {"none": 0, "mild": 6, "heavy": 14}, (5, 9, 15, 21)), "disturbance 'moderate'"),
-        (RIGHT, "three parts"),
-        (None, "returns nothing"),
-    ],
-)
-def test_mistakes_with_the_score(answer, hint):
-    assert not check("08.2", lambda: answer)
-    assert hint in check("08.2", lambda: answer).hint
+@pytest.mark.parametrize("number", ANSWERS)
+def test_answer_without_return_is_told_so(number):
+    assert "needs a line with return" in exercises.check(number, lambda *_: None).hint
 
 
-def walk(observed, predicted, step, hold, release, *, mistake=""):
-    """The boundary as in the exercise, which can be broken in several ways."""
-    boundary, calm, history = predicted, 0, []
-    for offset in observed:
-        level = boundary if mistake == "boundary" else boundary - step
-        if offset < (1.0 if mistake == "release" else release) * level:
-            calm += 1
-        elif mistake != "not in a row":
-            calm = 0
-        if offset > boundary:
-            calm = 0
-            boundary += step
-            while mistake != "one step" and boundary < offset:
-                boundary += step
-        elif mistake != "never" and calm >= (1 if mistake == "flutter" else hold):
-            calm = calm if mistake == "not fresh" else 0
-            lower = predicted if mistake == "at once" else boundary - step
-            boundary = lower if mistake == "no floor" else max(lower, predicted)
-        history.append(boundary)
-    return history
+def test_the_other_gravity_is_right_too():
+    def fall_speed(height, mass, drag_area, air_density):
+        terminal = 2 * mass * 9.8 / (drag_area * air_density)
+        return np.sqrt(terminal * (1 - np.exp(-2 * 9.8 * height / terminal)))
+
+    assert exercises.check("08.1", fall_speed)
 
 
-@pytest.mark.parametrize(
-    ("mistake", "hint"),
-    [
-        ("never", "never comes down"),
-        ("flutter", "fluttering"),
-        ("one step", "still below it"),
-        ("no floor", "below what was predicted"),
-        ("at once", "one step at a time"),
-        ("boundary", "push it up again"),
-        ("release", "what is `release` for"),
-        ("not in a row", "have to follow each other"),
-        ("not fresh", "the next follows at once"),
-    ],
-)
-def test_mistakes_with_the_boundary(mistake, hint):
-    verdict = check("08.3", lambda *case: walk(*case, mistake=mistake))
+def test_the_library_falls_as_fast():
+    def fall_speed(height, mass, drag_area, air_density):
+        return risk.fall_speed(
+            height, replace(RISK_QUADROTOR, mass=mass, fall_drag_area=drag_area), air_density=air_density
+        )
+
+    assert exercises.check("08.1", fall_speed)
+
+
+def fall(height, mass, drag_area, air_density, factor=1.0):
+    """The formula, with the exponent times a factor."""
+    terminal = 2 * mass * 9.81 / (drag_area * air_density)
+    return math.sqrt(terminal * (1 - math.exp(-2 * factor * 9.81 * height / terminal)))
+
+
+def terminal_speed(height, mass, drag_area, air_density):
+    return math.sqrt(2 * mass * 9.81 / (drag_area * air_density))
+
+
+def chance(energy, shelter, ratio=1e6 / 34):
+    return 1 / (1 + math.sqrt(ratio) * (34 / energy) ** (1 / (4 * shelter)))
+
+
+def chance_under_one_root(energy, shelter):
+    return 1 / (1 + math.sqrt(1e6 / 34 * (34 / energy) ** (1 / (4 * shelter))))
+
+
+def in_the_open(value):
+    """Right with shelter, this below β and above it without."""
+    return lambda energy, shelter: chance(energy, shelter) if shelter > 0 else value(energy)
+
+
+def speed_in_time(height, mass, drag_area, air_density):
+    """Right at a time, but the time is that of a fall without air."""
+    terminal = terminal_speed(height, mass, drag_area, air_density)
+    return terminal * math.tanh(9.81 * math.sqrt(2 * height / 9.81) / terminal)
+
+
+def mean_rate_times_time(rate, voxels, cell, speed):
+    length = cell * np.linalg.norm(np.diff(voxels, axis=0), axis=1).sum()
+    return rate[tuple(voxels.T)].mean() * length / (3600 * speed)
+
+
+def cost(rate, voxels, cell, speed, begin=0.5, straight=False, diagonals=1.0):
+    """Deaths, with this share of each leg at the rate where it begins."""
+    lengths = np.linalg.norm(np.diff(voxels, axis=0), axis=1)
+    lengths[lengths > 1] *= diagonals
+    along = rate[tuple(voxels.T)]
+    legs = begin * along[:-1] + (1 - begin) * along[1:]
+    return float(legs @ (np.ones_like(lengths) if straight else lengths)) * cell / (3600 * speed)
+
+
+MISTAKES = [
+    ("08.1", lambda *f: fall(*f, factor=0.5), "as it is printed"),
+    ("08.1", lambda *f: fall(*f[:3], 1.0, factor=0.5), "Give your result a unit"),
+    ("08.1", lambda *f: fall(*f, factor=2.0), "more energy than gravity"),
+    ("08.1", lambda *f: math.sqrt(2 * 9.81 * f[0]), "without air"),
+    ("08.1", terminal_speed, "the terminal speed"),
+    ("08.1", speed_in_time, "the same time"),
+    ("08.1", lambda *f: fall(*f) ** 2, "the square of the speed"),
+    ("08.1", lambda *f: fall(*f[:3], 1.0), "where is the density"),
+    ("08.1", lambda *f: math.nan, "no finite number"),
+    ("08.1", lambda *f: 12.0, "you get 12.00 m/s"),
+    ("08.1", lambda *f: np.ones(3), "must be one number"),
+    ("08.2", chance_under_one_root, "the root covers the power"),
+    ("08.2", lambda e, s: 1 / (1 + math.sqrt(1e6 / 34) * (e / 34) ** (1 / (4 * s))), "which way up"),
+    ("08.2", lambda e, s: chance(e, s, (1e6 / 34) ** 2), "a root over α/β"),
+    ("08.2", lambda e, s: chance(e, s, 34 / 1e6), "which stands above"),
+    ("08.2", lambda e, s: 1 / (1 + math.sqrt(1e6 / 34) * (34 / e) ** (1 / 4 * s)), "mind the brackets"),
+    ("08.2", lambda e, s: chance(e, 1.0), "the same behind every shelter"),
+    ("08.2", lambda e, s: 0.5, "you say"),
+    ("08.2", chance, "divides by zero"),
+    ("08.2", lambda e, s: chance(e, max(s, 1e-6)), "the power grows without bound"),
+    ("08.2", in_the_open(lambda energy: None), "In the open your function returns nothing"),
+    ("08.2", in_the_open(lambda energy: 1.0), "let every blow kill"),
+    ("08.2", in_the_open(lambda energy: float(energy < 34)), "wrong way round"),
+    ("08.2", in_the_open(lambda energy: 0.0), "0 for 35 J"),
+    ("08.3", lambda rate, voxels, cell, speed: rate[tuple(voxels.T)].sum(), "the papers' sum"),
+    ("08.3", lambda r, v, c, s: r[tuple(v.T)].sum() * c / (3600 * s), "only by half"),
+    ("08.3", lambda *m: cost(*m, straight=True), "equally long"),
+    ("08.3", lambda *m: cost(*m, begin=0.0), "that a move leads to"),
+    ("08.3", lambda *m: cost(*m, begin=1.0), "where a move begins"),
+    ("08.3", mean_rate_times_time, "the mean rate"),
+    ("08.3", lambda *m: cost(*m, diagonals=2.0), "How long is a move over an edge"),
+    ("08.3", lambda *m: 2 * cost(*m), "Twice too much"),
+    ("08.3", lambda *m: 3600 * cost(*m), "the rate is per hour"),
+    ("08.3", lambda *m: 60 * cost(*m), "more than 60 seconds"),
+    ("08.3", lambda *m: cost(*m) / m[2], "lengths are in cells"),
+    ("08.3", lambda *m: cost(*m) * m[3], "Who is longer above a crowd"),
+    ("08.3", lambda *m: cost(*m) * m[3] ** 2, "the more die"),
+    ("08.3", lambda *m: cost(*m) / m[2] * 3600 * m[3], "not yet deaths"),
+    ("08.3", lambda *m: 7.0, "and you get 7"),
+    ("08.3", lambda rate, *_: rate[0, 0], "must be one number"),
+]
+
+
+@pytest.mark.parametrize(("number", "answer", "hint"), MISTAKES)
+def test_mistake_is_told_apart(number, answer, hint):
+    verdict = exercises.check(number, answer)
     assert not verdict
     assert hint in verdict.hint
 
 
-@pytest.mark.parametrize(
-    ("answer", "hint"),
-    [
-        (lambda observed, *rest: None, "returns nothing"),
-        (lambda observed, *rest: [2.0], "you return 1"),
-        (lambda observed, *rest: [2.0] * len(observed), "should rise"),
-        (lambda observed, *rest: [9.0] * len(observed), "should not be 9 m"),
-        (lambda observed, *rest: math.nan, "raises TypeError"),
-    ],
-)
-def test_other_answers_for_the_boundary(answer, hint):
-    assert not check("08.3", answer)
-    assert hint in check("08.3", answer).hint
-
-
-def test_boundary_written_otherwise_is_right():
-    assert check("08.3", walk)
-
-
-def test_solutions_agree_with_the_example(solutions):
-    found = solutions["boundaries"]([1, 2.7, 1, 1, 1, 1], 2, 0.5, 3, 0.8)
-    assert found == [2, 3, 3, 3, 2.5, 2.5]
+@pytest.mark.parametrize("number", ANSWERS)
+def test_hints_differ(number):
+    hints = [exercises.check(number, answer).hint for n, answer, _ in MISTAKES if n == number]
+    assert len(set(hints)) == len(hints)

@@ -2,11 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
-from scipy.optimize import linprog
 
 from uavlab.exercises import check
-from uavlab.spline import curvature as curvature_of_uavlab
 
 
 @pytest.mark.parametrize("number", ["11.1", "11.2", "11.3"])
@@ -15,179 +12,194 @@ def test_a_blank_answer_is_no_answer(number, blank):
     assert "return" in check(number, lambda *_: None).hint
 
 
-@pytest.mark.parametrize(("number", "name"), [("11.1", "curvature"), ("11.2", "control_points"), ("11.3", "speeds")])
-def test_the_solutions_are_right(number, name, solutions):
-    assert check(number, solutions[name])
+def fly(x, v, best, leader, inertia, r1, r2, v_max, low, high, *, mistake=""):
+    """A step of a swarm, particle by particle, which can be broken in several ways."""
+    places, speeds = np.empty_like(x), np.empty_like(v)
+    for n in range(len(x)):
+        own, swarm = (1.5, 2.0) if mistake != "exchanged" else (2.0, 1.5)
+        second = r1 if mistake == "one number" else r2
+        pull = own * r1[n] * (best[n] - x[n]) + swarm * second[n] * (leader - x[n])
+        if mistake == "no leader":
+            pull = own * r1[n] * (best[n] - x[n])
+        if mistake == "no own":
+            pull = swarm * r2[n] * (leader - x[n])
+        fast = inertia * v[n] + (-pull if mistake == "away" else pull)
+        slow = np.maximum(np.minimum(fast, v_max), -v_max)
+        if mistake == "above":
+            slow = np.minimum(fast, v_max)
+        if mistake in ("no limit", "wild"):
+            slow = fast
+        if mistake == "length":
+            slow = fast * min(1.0, v_max / np.linalg.norm(fast))
+        there = x[n] + {"old": v[n], "late": fast}.get(mistake, slow)
+        places[n] = there if mistake in ("open", "wild") else np.clip(there, low, high)
+        speeds[n] = slow
+    return places, speeds
 
 
-def by_gram(first, second):
-    """κ by scalar products alone, without a vector product."""
-    a, b, c = ((u * v).sum(axis=1) for u, v in ((first, first), (second, second), (first, second)))
-    return np.sqrt(a * b - c**2) / a**1.5
+def test_a_swarm_written_otherwise_is_right():
+    assert check("11.1", fly)
 
 
-@pytest.mark.parametrize("answer", [by_gram, curvature_of_uavlab])
-def test_curvature_written_otherwise_is_right(answer):
-    assert check("11.1", answer)
+@pytest.mark.parametrize(
+    ("mistake", "hint"),
+    [
+        ("old", "the velocity they had"),
+        ("no limit", "what is v_max for?"),
+        ("above", "backwards it isn't"),
+        ("length", "each of its parts"),
+        ("late", "after the particles have moved"),
+        ("open", "leave the box"),
+        ("wild", "And: Some particles leave the box"),
+        ("exchanged", "are exchanged"),
+        ("away", "away from both bests"),
+        ("one number", "Both pulls use r1"),
+        ("no leader", "learn of the others"),
+        ("no own", "own best is missing"),
+    ],
+)
+def test_mistakes_with_the_swarm(mistake, hint):
+    verdict = check("11.1", lambda *question: fly(*question, mistake=mistake))
+    assert not verdict
+    assert hint in verdict.hint
 
 
-def across(first, second):
-    return np.linalg.norm(np.cross(first, second), axis=1)
-
-
-def level(vectors):
-    return vectors * (1, 1, 0)
+def in_place(x, v, *rest):
+    places, speeds = fly(x, v, *rest)
+    x[:], v[:] = places, speeds
+    return x, v
 
 
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1) ** (2 / 3), "wrong way up: it isn't 2/3"),
-        (lambda r1, r2: across(r1, r2) / np.linalg.norm(r1, axis=1) ** (2 / 3), "wrong way up: 2/3 of |r′|"),
-        (lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1), "divide by |r′|²"),
-        (lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1) ** 3, "already the second power"),
-        (lambda r1, r2: np.linalg.norm(r2, axis=1), "one metre per unit"),
-        (lambda r1, r2: np.linalg.norm(r2, axis=1) / (r1**2).sum(axis=1), "all of r″"),
-        (across, "numerator alone"),
-        (lambda r1, r2: by_gram(level(r1), level(r2)), "leave out the height"),
-        (lambda r1, r2: np.cross(r1, r2)[:, 2] / np.hypot(r1[:, 0], r1[:, 1]) ** 3, "a sign for left and right"),
-        (lambda r1, r2: np.abs((r1 * r2).sum(axis=1)) / np.linalg.norm(r1, axis=1) ** 3, "scalar product"),
-        (lambda r1, r2: 1 / by_gram(r1, r2), "That is the radius"),
-        (lambda r1, r2: np.linalg.norm(np.cross(r1, r2)) / np.linalg.norm(r1) ** 3, "shape (6,) here"),
-        (lambda r1, r2: 2 * by_gram(r1, r2), "Try it on a circle"),
+        (in_place, "changes an array"),
+        (lambda *question: fly(*question)[0], "two parts"),
+        (lambda *question: [part[0] for part in fly(*question)], "as x; yours have (3,)"),
+        (lambda *question: (fly(*question)[0], 0 * question[0]), "The positions are right"),
+        (lambda *question: (0 * question[0], fly(*question)[1]), "The velocities are right"),
+        (lambda *question: (question[0], question[1]), "three terms of the velocity"),
     ],
 )
-def test_mistakes_with_the_curvature(answer, hint):
-    verdict = check("11.1", answer)
+def test_other_answers_for_the_swarm(answer, hint):
+    assert not check("11.1", answer)
+    assert hint in check("11.1", answer).hint
+
+
+def walk(f, x, b, reach, step, *, mistake=""):
+    """A step of a beetle, which can be broken in several ways."""
+    along = b if mistake == "long" else b / np.sqrt((b**2).sum())
+    tip = (reach / 2 if mistake == "span" else reach) * along
+    ahead, behind = f(x + tip), f(x if mistake == "one tip" else x - tip)
+    if ahead == behind and mistake != "restless":
+        return x.copy()
+    forth = ahead < behind if mistake != "uphill" else ahead > behind
+    length = {"far": reach, "by size": step * abs(ahead - behind)}.get(mistake, step)
+    there = x + length * along if forth else x - length * along
+    return x.copy() if mistake == "greedy" and f(there) >= f(x) else there
+
+
+def test_a_beetle_written_otherwise_is_right():
+    assert check("11.2", walk)
+
+
+@pytest.mark.parametrize(
+    ("mistake", "hint"),
+    [
+        ("uphill", "side where f is larger"),
+        ("long", "length of b"),
+        ("far", "as far as its antennae reach"),
+        ("span", "from the body to one tip"),
+        ("one tip", "two antennae"),
+        ("by size", "Only the sign"),
+        ("greedy", "the greedy one"),
+        ("restless", "both sides smell the same"),
+    ],
+)
+def test_mistakes_with_the_beetle(mistake, hint):
+    verdict = check("11.2", lambda *question: walk(*question, mistake=mistake))
     assert not verdict
     assert hint in verdict.hint
 
 
-def by_scipy(waypoints):
-    """From SciPy's natural spline: at a knot the curve is r″/6 off its control point, and unbent at its ends."""
-    knots = np.arange(len(waypoints))
-    return waypoints - CubicSpline(knots, waypoints, bc_type="natural")(knots, 2) / 6
-
-
-def test_control_points_found_otherwise_are_right():
-    assert check("11.2", by_scipy)
-
-
-def equations(waypoints, *, sixth=6.0, ends="right"):
-    count = len(waypoints)
-    matrix = (4 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)) / sixth
-    if ends == "right":
-        matrix[[0, -1]] = np.eye(count)[[0, -1]]
-    if ends == "doubled":
-        matrix[[0, -1], [0, -1]] = 5 / sixth
-    if ends == "twice":
-        matrix[[0, -1]] = 2 * np.eye(count)[[0, -1]]
-    return np.linalg.solve(matrix, waypoints)
-
-
-def smoothed(waypoints):
-    inner = (waypoints[:-2] + 4 * waypoints[1:-1] + waypoints[2:]) / 6
-    return np.vstack([waypoints[:1], inner, waypoints[-1:]])
-
-
-def doubled_in_place(waypoints):
-    waypoints *= 2
-    return waypoints
+def moved_in_place(f, x, b, reach, step):
+    x += walk(f, x, b, reach, step) - x
+    return x
 
 
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (lambda waypoints: waypoints.copy(), "the waypoints themselves"),
-        (smoothed, "the wrong way round"),
-        (lambda waypoints: 2 * waypoints - smoothed(waypoints), "found together"),
-        (lambda waypoints: equations(waypoints, ends="none"), "a neighbour outside is taken for 0"),
-        (lambda waypoints: equations(waypoints, ends="doubled"), "as its own neighbour"),
-        (lambda waypoints: equations(waypoints, sixth=1.0), "too near to the origin"),
-        (lambda waypoints: equations(waypoints, sixth=1.0, ends="none"), "add up to 6"),
-        (lambda waypoints: equations(waypoints, ends="twice"), "doesn't begin or end"),
-        (lambda waypoints: equations(waypoints) + 1.0, "passes the six waypoints"),
-        (lambda waypoints: equations(waypoints)[1:-1], "The answer has the shape (6, 3)"),
-        (doubled_in_place, "changes an array"),
+        (moved_in_place, "changes x or b"),
+        (lambda f, x, b, reach, step: 1.0, "a point of three numbers"),
+        (lambda f, x, b, reach, step: x + b, "How far should it go"),
     ],
 )
-def test_mistakes_with_the_control_points(answer, hint):
-    verdict = check("11.2", answer)
-    assert not verdict
-    assert hint in verdict.hint
+def test_other_answers_for_the_beetle(answer, hint):
+    assert not check("11.2", answer)
+    assert hint in check("11.2", answer).hint
 
 
-def by_linear_program(distance, allowed, acceleration):
-    """The greatest squares of speeds under all limits at once."""
-    count = len(distance)
-    change = np.diff(np.eye(count), axis=0)
-    gain = 2 * acceleration * np.diff(distance)
-    bounds = [(0, 0 if i in (0, count - 1) else v**2) for i, v in enumerate(allowed)]
-    found = linprog(-np.ones(count), np.vstack([change, -change]), np.concatenate([gain, gain]), bounds=bounds)
-    return np.sqrt(found.x)
+def wins(ours, theirs, rng, *, count=1000, runs=False, ends=(2.5, 97.5), replace=True, maps=None, seeds=False):
+    """Share and interval, which can be broken in several ways."""
+    won = 0.5 * (ours < theirs) + 0.5 * (ours <= theirs)
+    rows = won.reshape(-1, 1) if runs else won
+    size = len(rows) if maps is None else maps
+    drawn = [rows[rng.choice(len(rows), size, replace=replace)] for _ in range(count)]
+    if seeds:
+        drawn = [row[:, rng.integers(row.shape[1], size=1)] for row in drawn]
+    low, high = np.percentile([rows.mean() for rows in drawn], ends)
+    return won.mean(), low, high
 
 
-def test_speeds_found_by_a_linear_program_are_right():
-    assert check("11.3", by_linear_program)
-
-
-def drive(distance, allowed, acceleration, *, passes="both", factor=2.0, power=2, rest=True, start=True):
-    """Speeds by passes along the curve and back, which can be broken in several ways."""
-    speed = allowed**power
-    if rest:
-        speed[-1] = 0.0
-    if rest and start:
-        speed[0] = 0.0
-    step = factor * acceleration * np.diff(distance)
-    for _ in range(2):
-        if passes in ("both", "forward"):
-            for i, gain in enumerate(step):
-                speed[i + 1] = min(speed[i + 1], speed[i] + gain)
-        if passes in ("both", "backward"):
-            for i, gain in reversed(list(enumerate(step))):
-                speed[i] = min(speed[i], speed[i + 1] + gain)
-    return speed ** (1 / power)
-
-
-@pytest.mark.parametrize(
-    ("broken", "hint"),
-    [
-        ({"passes": "forward"}, "never brakes"),
-        ({"passes": "backward"}, "brakes in time, but"),
-        ({"passes": "none"}, "it jumps, where the UAV can't"),
-        ({"rest": False}, "begins and ends at rest"),
-        ({"start": False}, "begins and ends at rest"),
-        ({"factor": 1.0}, "half of what it may"),
-        ({"power": 1, "factor": 1.0}, "You add a·s to the speed"),
-        ({"power": 1}, "add 2as to the speed itself"),
-        ({"factor": 4.0}, "are allowed"),
-    ],
-)
-def test_mistakes_with_the_speeds(broken, hint):
-    verdict = check("11.3", lambda *question: drive(*question, **broken))
-    assert not verdict
-    assert hint in verdict.hint
+@pytest.mark.parametrize("count", [1000, 3000])
+@pytest.mark.parametrize("seed", range(3))
+def test_an_interval_by_other_draws_is_right(count, seed):
+    other = np.random.default_rng(seed)
+    assert check("11.3", lambda ours, theirs, rng: wins(ours, theirs, other, count=count))
 
 
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (lambda *question: 0.9 * drive(*question), "not as fast as possible"),
-        (lambda *question: -drive(*question), "negative or not numbers"),
-        (lambda *question: drive(*question)[1:], "The answer has the shape"),
-        (lambda distance, allowed, a: drive(distance, 1.2 * allowed, a), "m/s, "),
+        (lambda ours, theirs, rng: wins(theirs, ours, rng), "the other one wins"),
+        (lambda ours, theirs, rng: ((ours < theirs).mean(), 0, 1), "ties as lost"),
+        (lambda ours, theirs, rng: ((ours <= theirs).mean(), 0, 1), "ties as won"),
+        (lambda ours, theirs, rng: 100 * np.array(wins(ours, theirs, rng)), "in per cent"),
+        (lambda *q: wins(*(np.median(gaps, axis=1, keepdims=True) for gaps in q[:2]), q[2]), "medians of each map"),
+        (lambda *q: ((q[0] < q[1])[q[0] != q[1]].mean(), 0, 1), "leave the ties out"),
+        (lambda *q: (0.5, 0.4, 0.6), "it should be"),
+        (lambda *q: wins(*q, runs=True), "runs or maps"),
+        (lambda *q: wins(*q, ends=(5, 95)), "5 % and 95 %"),
+        (lambda *q: wins(*q, ends=(16, 84)), "16 % and 84 %"),
+        (lambda *q: wins(*q, ends=(97.5, 2.5)), "above the upper one"),
+        (lambda *q: wins(*q, replace=False), "Both ends are the same"),
+        (lambda *q: wins(*q, maps=4), "how many maps are drawn"),
+        (lambda *q: wins(*q, seeds=True), "do all their seeds come along"),
+        (lambda *q: [end + 0.2 * (n > 0) for n, end in enumerate(wins(*q))], "lies elsewhere"),
+        (lambda *q: wins(*q)[0], "three numbers"),
     ],
 )
-def test_other_answers_for_the_speeds(answer, hint):
+def test_mistakes_with_the_wins(answer, hint):
     verdict = check("11.3", answer)
     assert not verdict
     assert hint in verdict.hint
 
 
+def test_runs_that_did_not_arrive_are_not_left_out():
+    def only_arrived(ours, theirs, rng):
+        both = np.isfinite(ours) & np.isfinite(theirs)
+        share = np.where(ours == theirs, 0.5, ours < theirs)[both].mean()
+        return share, 0.0, 1.0
+
+    assert "has lost against one who does" in check("11.3", only_arrived).hint
+
+
 def test_solutions_answer_examples(solutions):
-    circle = solutions["curvature"](np.array([[0.0, 10.0, 0.0]]), np.array([[-20.0, 7.0, 0.0]]))
-    assert circle == pytest.approx([0.2])
-    straight = np.column_stack([np.arange(4.0), np.zeros(4)])
-    assert solutions["control_points"](straight) == pytest.approx(straight)
-    along = solutions["speeds"](np.array([0.0, 2.0, 4.0, 6.0, 8.0]), np.full(5, 3.0), 1.0)
-    assert along == pytest.approx([0.0, 2.0, np.sqrt(8.0), 2.0, 0.0])
+    one = np.ones((1, 1))
+    places, speeds = solutions["fly"](0 * one, one, 2 * one, np.array([4.0]), 0.9, one / 2, one / 2, 10.0, -5.0, 5.0)
+    assert (places[0, 0], speeds[0, 0]) == (5.0, pytest.approx(0.9 + 1.5 + 4.0))
+    stands = solutions["walk"](lambda point: point @ point, np.array([3.0, 0.0]), np.array([2.0, 0.0]), 0.5, 0.25)
+    assert stands.tolist() == [2.75, 0.0]
+    share, low, high = solutions["share_of_wins"](np.zeros((4, 2)), np.ones((4, 2)), np.random.default_rng(0))
+    assert (share, low, high) == (1.0, 1.0, 1.0)

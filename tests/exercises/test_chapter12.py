@@ -1,13 +1,12 @@
 """Exercises of chapter 12: other ways to the answer pass; typical mistakes fail, each with a hint of its own."""
 
-import math
-
 import numpy as np
 import pytest
-from scipy.optimize import brentq
-from scipy.stats import beta, binom, norm
+from scipy.interpolate import CubicSpline
+from scipy.optimize import linprog
 
 from uavlab.exercises import check
+from uavlab.spline import curvature as curvature_of_uavlab
 
 
 @pytest.mark.parametrize("number", ["12.1", "12.2", "12.3"])
@@ -16,178 +15,179 @@ def test_a_blank_answer_is_no_answer(number, blank):
     assert "return" in check(number, lambda *_: None).hint
 
 
-def acceleration(thrust, wind, velocity, mass, drag_area, *, mistake=""):
-    """Component by component, and broken in several ways."""
-    stream = [
-        {"still": w, "no wind": -v, "sum": w + v, "against": v - w}.get(mistake, w - v)
-        for w, v in zip(wind, velocity, strict=True)
-    ]
-    size = math.sqrt(sum(s * s for s in stream))
-    half = 1.0 if mistake == "no half" else 0.5
-    found = []
-    for axis, s in enumerate(stream):
-        drag = half * 1.225 * drag_area * {"each": abs(s), "linear": 1.0, "no sign": s}.get(mistake, size) * s
-        weight = 9.81 if axis == 2 else 0.0
-        if mistake == "force":
-            found.append(thrust[axis] + drag - mass * weight)
-        elif mistake == "light drag":
-            found.append(thrust[axis] / mass + drag - weight)
-        elif mistake == "g by mass":
-            found.append((thrust[axis] + drag - weight) / mass)
-        else:
-            found.append((thrust[axis] + drag) / mass - {"no weight": 0.0, "up": -weight}.get(mistake, weight))
-    return found
+@pytest.mark.parametrize(("number", "name"), [("12.1", "curvature"), ("12.2", "control_points"), ("12.3", "speeds")])
+def test_the_solutions_are_right(number, name, solutions):
+    assert check(number, solutions[name])
 
 
-def test_an_acceleration_written_otherwise_is_right():
-    assert check("12.1", acceleration)
+def by_gram(first, second):
+    """κ by scalar products alone, without a vector product."""
+    a, b, c = ((u * v).sum(axis=1) for u, v in ((first, first), (second, second), (first, second)))
+    return np.sqrt(a * b - c**2) / a**1.5
+
+
+@pytest.mark.parametrize("answer", [by_gram, curvature_of_uavlab])
+def test_curvature_written_otherwise_is_right(answer):
+    assert check("12.1", answer)
+
+
+def across(first, second):
+    return np.linalg.norm(np.cross(first, second), axis=1)
+
+
+def level(vectors):
+    return vectors * (1, 1, 0)
 
 
 @pytest.mark.parametrize(
-    ("mistake", "hint"),
+    ("answer", "hint"),
     [
-        ("against", "against the stream"),
-        ("still", "stands still"),
-        ("no wind", "where is the wind?"),
-        ("sum", "You add wind and velocity"),
-        ("no half", "twice too large"),
-        ("each", "each component on its own"),
-        ("no sign", "A square has no sign"),
-        ("linear", "not with its square"),
-        ("no weight", "has no weight"),
-        ("up", "pulls up"),
-        ("g by mass", "divide g by the mass"),
-        ("force", "That is the force"),
-        ("light drag", "a heavy UAV feels less of it"),
+        (lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1) ** (2 / 3), "wrong way up: it isn't 2/3"),
+        (lambda r1, r2: across(r1, r2) / np.linalg.norm(r1, axis=1) ** (2 / 3), "wrong way up: 2/3 of |r′|"),
+        (lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1), "divide by |r′|²"),
+        (lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1) ** 3, "already the second power"),
+        (lambda r1, r2: np.linalg.norm(r2, axis=1), "one metre per unit"),
+        (lambda r1, r2: np.linalg.norm(r2, axis=1) / (r1**2).sum(axis=1), "all of r″"),
+        (across, "numerator alone"),
+        (lambda r1, r2: by_gram(level(r1), level(r2)), "leave out the height"),
+        (lambda r1, r2: np.cross(r1, r2)[:, 2] / np.hypot(r1[:, 0], r1[:, 1]) ** 3, "a sign for left and right"),
+        (lambda r1, r2: np.abs((r1 * r2).sum(axis=1)) / np.linalg.norm(r1, axis=1) ** 3, "scalar product"),
+        (lambda r1, r2: 1 / by_gram(r1, r2), "That is the radius"),
+        (lambda r1, r2: np.linalg.norm(np.cross(r1, r2)) / np.linalg.norm(r1) ** 3, "shape (6,) here"),
+        (lambda r1, r2: 2 * by_gram(r1, r2), "Try it on a circle"),
     ],
 )
-def test_mistakes_with_the_acceleration(mistake, hint):
-    verdict = check("12.1", lambda *question: acceleration(*question, mistake=mistake))
+def test_mistakes_with_the_curvature(answer, hint):
+    verdict = check("12.1", answer)
     assert not verdict
     assert hint in verdict.hint
 
 
+def by_scipy(waypoints):
+    """From SciPy's natural spline: at a knot the curve is r″/6 off its control point, and unbent at its ends."""
+    knots = np.arange(len(waypoints))
+    return waypoints - CubicSpline(knots, waypoints, bc_type="natural")(knots, 2) / 6
+
+
+def test_control_points_found_otherwise_are_right():
+    assert check("12.2", by_scipy)
+
+
+def equations(waypoints, *, sixth=6.0, ends="right"):
+    count = len(waypoints)
+    matrix = (4 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)) / sixth
+    if ends == "right":
+        matrix[[0, -1]] = np.eye(count)[[0, -1]]
+    if ends == "doubled":
+        matrix[[0, -1], [0, -1]] = 5 / sixth
+    if ends == "twice":
+        matrix[[0, -1]] = 2 * np.eye(count)[[0, -1]]
+    return np.linalg.solve(matrix, waypoints)
+
+
+def smoothed(waypoints):
+    inner = (waypoints[:-2] + 4 * waypoints[1:-1] + waypoints[2:]) / 6
+    return np.vstack([waypoints[:1], inner, waypoints[-1:]])
+
+
+def doubled_in_place(waypoints):
+    waypoints *= 2
+    return waypoints
+
+
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (lambda *question: acceleration(*question)[2], "a vector of three numbers"),
-        (lambda *question: np.zeros(3), "Begin with what is simplest"),
-        (lambda f, w, v, m, a: f / m + 3 * (w - v) - [0, 0, 9.81], "Which way does the air stream past"),
+        (lambda waypoints: waypoints.copy(), "the waypoints themselves"),
+        (smoothed, "the wrong way round"),
+        (lambda waypoints: 2 * waypoints - smoothed(waypoints), "found together"),
+        (lambda waypoints: equations(waypoints, ends="none"), "a neighbour outside is taken for 0"),
+        (lambda waypoints: equations(waypoints, ends="doubled"), "as its own neighbour"),
+        (lambda waypoints: equations(waypoints, sixth=1.0), "too near to the origin"),
+        (lambda waypoints: equations(waypoints, sixth=1.0, ends="none"), "add up to 6"),
+        (lambda waypoints: equations(waypoints, ends="twice"), "doesn't begin or end"),
+        (lambda waypoints: equations(waypoints) + 1.0, "passes the six waypoints"),
+        (lambda waypoints: equations(waypoints)[1:-1], "The answer has the shape (6, 3)"),
+        (doubled_in_place, "changes an array"),
     ],
 )
-def test_other_answers_for_the_acceleration(answer, hint):
-    assert hint in check("12.1", answer).hint
-
-
-def by_roots(crashed, flights):
-    """The definition, solved: where as many or more, or as many or fewer, are seen in 2.5 % of the trials."""
-    low, high = 0.0, 1.0
-    if crashed > 0:
-        low = brentq(lambda p: binom.sf(crashed - 1, flights, p) - 0.025, 1e-12, 1 - 1e-12, xtol=1e-14, rtol=1e-12)
-    if crashed < flights:
-        high = brentq(lambda p: binom.cdf(crashed, flights, p) - 0.025, 1e-12, 1 - 1e-12, xtol=1e-14, rtol=1e-12)
-    return low, high
-
-
-def test_an_interval_from_its_definition_is_right():
-    assert check("12.2", by_roots)
-
-
-def normal(crashed, flights):
-    rate = crashed / flights
-    half = norm.ppf(0.975) * math.sqrt(rate * (1 - rate) / flights)
-    return rate - half, rate + half
-
-
-@pytest.mark.parametrize(
-    ("answer", "hint"),
-    [
-        (normal, "no width"),
-        (lambda k, n: np.clip(normal(k, n), 0, 1), "no width"),
-        (lambda k, n: (beta.ppf(0.025, k, n - k + 1), beta.ppf(0.975, k + 1, n - k)), "is NaN"),
-        (lambda k, n: by_roots(k, n)[::-1], "is the upper one"),
-        (lambda k, n: 1000 * np.array(by_roots(k, n)), "per 1 000"),
-        (lambda k, n: beta.ppf([0.025, 0.975], k + 1, n - k + 1), "even prior"),
-        (lambda k, n: np.nan_to_num(beta.ppf([0.05, 0.95], [k, k + 1], [n - k + 1, n - k]), nan=n == k), "holds 90 %"),
-        (lambda k, n: np.nan_to_num(beta.ppf([0.025, 0.975], [k, k], n - k + 1)), "The lower end is right"),
-        (lambda k, n: np.nan_to_num(beta.ppf([0.05, 0.975], [k, k + 1], [n - k + 1, n - k])), "The upper end is right"),
-        (lambda k, n: np.nan_to_num(beta.ppf([0.025, 0.975], [k, k + 1], [n - k + 1, n - k])), "when all do"),
-        (lambda k, n: (0.1, 0.2), "How often would 3 or fewer be seen"),
-        (lambda k, n: by_roots(k, n)[0], "two numbers"),
-    ],
-)
-def test_mistakes_with_the_interval(answer, hint):
+def test_mistakes_with_the_control_points(answer, hint):
     verdict = check("12.2", answer)
     assert not verdict
     assert hint in verdict.hint
 
 
-def keep(sigma, seconds, allowed, radius, *, mistake=""):
-    """A distance by search, and broken in several ways."""
-    pace = 1.0 if mistake == "radian" else 1 / (2 * math.pi)
-    time = 1.0 if mistake == "no exposure" else seconds
-
-    def touches(margin):
-        return time * pace * math.exp(-0.5 * (margin / sigma) ** 2)
-
-    margin = brentq(lambda u: touches(u) - allowed, 0, 50 * sigma, xtol=1e-13) if touches(0) > allowed else 0.0
-    margin *= {"no two": 1 / math.sqrt(2), "base 10": 1 / math.sqrt(math.log(10)), "square": sigma}.get(mistake, 1.0)
-    body = {"centre": 0.0, "twice": 2 * radius}.get(mistake, radius)
-    return body + margin
+def by_linear_program(distance, allowed, acceleration):
+    """The greatest squares of speeds under all limits at once."""
+    count = len(distance)
+    change = np.diff(np.eye(count), axis=0)
+    gain = 2 * acceleration * np.diff(distance)
+    bounds = [(0, 0 if i in (0, count - 1) else v**2) for i, v in enumerate(allowed)]
+    found = linprog(-np.ones(count), np.vstack([change, -change]), np.concatenate([gain, gain]), bounds=bounds)
+    return np.sqrt(found.x)
 
 
-def test_a_distance_by_search_is_right():
-    assert check("12.3", keep)
+def test_speeds_found_by_a_linear_program_are_right():
+    assert check("12.3", by_linear_program)
 
 
-def test_the_chance_of_a_touch_for_their_number_is_right():
-    assert check("12.3", lambda s, t, p, r: keep(s, t, -math.log(1 - p), r))
+def drive(distance, allowed, acceleration, *, passes="both", factor=2.0, power=2, rest=True, start=True):
+    """Speeds by passes along the curve and back, which can be broken in several ways."""
+    speed = allowed**power
+    if rest:
+        speed[-1] = 0.0
+    if rest and start:
+        speed[0] = 0.0
+    step = factor * acceleration * np.diff(distance)
+    for _ in range(2):
+        if passes in ("both", "forward"):
+            for i, gain in enumerate(step):
+                speed[i + 1] = min(speed[i + 1], speed[i] + gain)
+        if passes in ("both", "backward"):
+            for i, gain in reversed(list(enumerate(step))):
+                speed[i] = min(speed[i], speed[i + 1] + gain)
+    return speed ** (1 / power)
 
 
 @pytest.mark.parametrize(
-    ("mistake", "hint"),
+    ("broken", "hint"),
     [
-        ("radian", "count a radian as a turn"),
-        ("no exposure", "the same for a second and for an hour"),
-        ("no two", "Check the exponent"),
-        ("base 10", "natural logarithm"),
-        ("square", "grows with σ²"),
-        ("centre", "first thing that touches"),
-        ("twice", "half of it already"),
+        ({"passes": "forward"}, "never brakes"),
+        ({"passes": "backward"}, "brakes in time, but"),
+        ({"passes": "none"}, "it jumps, where the UAV can't"),
+        ({"rest": False}, "begins and ends at rest"),
+        ({"start": False}, "begins and ends at rest"),
+        ({"factor": 1.0}, "half of what it may"),
+        ({"power": 1, "factor": 1.0}, "You add a·s to the speed"),
+        ({"power": 1}, "add 2as to the speed itself"),
+        ({"factor": 4.0}, "are allowed"),
     ],
 )
-def test_mistakes_with_the_distance(mistake, hint):
-    verdict = check("12.3", lambda *question: keep(*question, mistake=mistake))
+def test_mistakes_with_the_speeds(broken, hint):
+    verdict = check("12.3", lambda *question: drive(*question, **broken))
     assert not verdict
     assert hint in verdict.hint
-
-
-def always_a_margin(sigma, seconds, allowed, radius):
-    return radius + sigma * math.sqrt(abs(2 * math.log(seconds / (2 * math.pi * allowed))))
 
 
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (lambda s, t, p, r: r + 3 * s, "short or long"),
-        (lambda s, t, p, r: r + s * norm.ppf(1 - p), "on one side"),
-        (lambda s, t, p, r: r + s * norm.ppf(1 - p / 2), "many moments"),
-        (always_a_margin, "no margin at all"),
-        (lambda s, t, p, r: keep(s, t, p, r) if t > 1 else 0.0, "has a radius of 0.4 m"),
-        (lambda s, t, p, r: 2.0, "solve for u"),
-        (lambda s, t, p, r: keep(s, t, p, r) + 0.1, "0.001 are allowed"),
+        (lambda *question: 0.9 * drive(*question), "not as fast as possible"),
+        (lambda *question: -drive(*question), "negative or not numbers"),
+        (lambda *question: drive(*question)[1:], "The answer has the shape"),
+        (lambda distance, allowed, a: drive(distance, 1.2 * allowed, a), "m/s, "),
     ],
 )
-def test_other_answers_for_the_distance(answer, hint):
+def test_other_answers_for_the_speeds(answer, hint):
     verdict = check("12.3", answer)
     assert not verdict
     assert hint in verdict.hint
 
 
 def test_solutions_answer_examples(solutions):
-    assert solutions["acceleration"](np.zeros(3), np.array([3.0, 4, 0]), np.zeros(3), 1.0, 0.08) == pytest.approx(
-        [0.735, 0.98, -9.81]
-    )
-    assert solutions["crash_interval"](0, 1000) == pytest.approx((0.0, 1 - 0.025 ** (1 / 1000)))
-    assert solutions["crash_interval"](7, 50) == pytest.approx(by_roots(7, 50))
-    assert solutions["distance_to_keep"](1.0, 2 * math.pi, math.exp(-4.5), 0.5) == pytest.approx(3.5)
+    circle = solutions["curvature"](np.array([[0.0, 10.0, 0.0]]), np.array([[-20.0, 7.0, 0.0]]))
+    assert circle == pytest.approx([0.2])
+    straight = np.column_stack([np.arange(4.0), np.zeros(4)])
+    assert solutions["control_points"](straight) == pytest.approx(straight)
+    along = solutions["speeds"](np.array([0.0, 2.0, 4.0, 6.0, 8.0]), np.full(5, 3.0), 1.0)
+    assert along == pytest.approx([0.0, 2.0, np.sqrt(8.0), 2.0, 0.0])

@@ -1,4 +1,4 @@
-"""Heights as people write them: "12.5", "12,5 m", "40 ft", "40'6\\"", "10+", "4;5", "3-4"."""
+"""Heights as people write them: "13.5", "12,5 m", "40 ft", "40'6\\"", "10+", "4;5", "3-4"."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Checks of the course's exercises: what is right, or what is wrong and why, without giving the answer away.
 
-`check("06.2", answer)` looks for exercise 2 of chapter 6. Each chapter is a module, each exercise a function of the
+`check("05.2", answer)` looks for exercise 2 of chapter 5. Each chapter is a module, each exercise a function of the
 answer that returns a hint, or nothing when the answer is right. What they share is in `uavlab.exercises.hints`.
 """
 
@@ -33,7 +33,7 @@ def check(number: str, answer: Any) -> Verdict:
     Parameters
     ----------
     number : str
-        Chapter and exercise, as in "06.2".
+        Chapter and exercise, as in "05.2".
     answer : object
         What the exercise asks for: a number, an array or a function.
 
@@ -49,8 +49,8 @@ def check(number: str, answer: Any) -> Verdict:
 
     Examples
     --------
-    >>> check("06.1", lambda dx, dy, dz: dx + dy + dz)
-    06.1: not yet. That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.
+    >>> check("05.1", lambda dx, dy, dz: dx + dy + dz)
+    05.1: not yet. That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.
     """
     number = checks.text("number", number)
     chapter, _, exercise = number.partition(".")
@@ -58,7 +58,7 @@ def check(number: str, answer: Any) -> Verdict:
         module = importlib.import_module(f"uavlab.exercises.chapter{chapter}")
         hint_for = getattr(module, f"exercise_{exercise}")
     except (ImportError, AttributeError):
-        raise ValueError(f"number must be that of an exercise, as in '06.2', got {number!r}") from None
+        raise ValueError(f"number must be that of an exercise, as in '05.2', got {number!r}") from None
     if answer is None or answer is ...:
         return Verdict(number, "There is no answer yet: put yours in the place of the dots.")
     try:

@@ -1,294 +1,252 @@
-"""Exercises of chapter 5, risk maps: the speed of a fall, the chance that a blow kills, the deaths that a route costs.
+"""Exercises of chapter 5, A*: the octile distance, legal moves, and a broken search to repair.
 
-A mistake is recognised by what it answers; its hint says why that can't be.
+A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
+by how they are written.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable, Sequence
+import operator
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from uavlab.exercises.hints import NOTHING, each_alike, recognised
+from uavlab.exercises.hints import each_alike, recognised
 
-GRAVITY = 9.81
-FALLS = [
-    (0.0, 1.38, 0.3 * 0.0188, 1.225),
-    (0.5, 1.38, 0.3 * 0.0188, 1.225),
-    (30.0, 1.38, 0.3 * 0.0188, 1.225),
-    (30.0, 1.38, 0.06, 1.225),
-    (120.0, 2.5, 0.04, 0.9),
-]
-"""Height, mass, drag area, air density."""
+Move = tuple[int, ...]
+Graph = Mapping[Any, Mapping[Any, float]]
 
-EVEN_ODDS_ENERGY, LEAST_FATAL_ENERGY = 1e6, 34.0
-BLOWS = [(energy, shelter) for energy in (5.0, 34.0, 100.0, 555.0, 1e4, 1e6) for shelter in (0.25, 0.5, 0.75, 1.0)]
-IN_THE_OPEN = [(5.0, 0.0), (33.0, 0.0), (35.0, 0.0), (555.0, 0.0), (1e7, 0.0)]
+MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if any(move)]
 
 
-def same(given: Sequence[Any], right: Sequence[float], relative: float = 1e-9) -> bool:
-    return each_alike(map(float, given), right, partial(math.isclose, rel_tol=relative, abs_tol=1e-15))
-
-
-def exercise_1(answer: Callable[[float, float, float, float], float]) -> str:
-    """05.1: vertical speed after a fall from rest with drag."""
-    given = [answer(*fall) for fall in FALLS]
-    if any(speed is None for speed in given):
-        return NOTHING
-    if any(np.shape(speed) != () for speed in given):
-        return "The answer must be one number, the speed in m/s."
-    same_speeds = partial(same, relative=1e-3)  # g = 9.8 m/s² is right too
-    if same_speeds(given, [speed_after(*fall) for fall in FALLS]):
+def exercise_1(octile: Callable[[int, int, int], float]) -> str:
+    """05.1: the shortest way over 26 moves on an empty map, from the differences of the coordinates."""
+    sorted_ahead = [(5, 3, 1), (7, 7, 2), (9, 4, 4), (6, 0, 0), (3, 3, 3), (8, 2, 0), (0, 0, 0)]
+    if is_octile(octile, sorted_ahead):
+        shuffled = [order for offset in sorted_ahead for order in itertools.permutations(offset)]
+        if not is_octile(octile, shuffled):
+            return "It is right where |dx| ≥ |dy| ≥ |dz|. The goal may lie anywhere: which of the three is largest?"
+        mirrored = [tuple(s * d for s, d in zip(sign, o, strict=True)) for sign in MOVES for o in shuffled if all(sign)]
+        if not is_octile(octile, mirrored):
+            return (
+                "It is right for goals to the north-east and above. What are dx, dy, dz when the goal lies to the west?"
+            )
         return ""
-    if hint := recognised(given, FALL_MISTAKES, FALLS, same_speeds):
-        return hint
-    if any(not np.isfinite(speed) for speed in given):
-        return "Some speeds are no finite number. What is under the root, and can it be negative?"
-    return (
-        f"After 30 m with 1.38 kg, 0.00564 m² and 1.225 kg/m³ you get {given[2]:.2f} m/s. Two tests: for a short fall "
-        "V² must go to 2 g h, and for a long one m g = ½ · drag area · air density · V²."
+    return recognised(octile, OCTILE_MISTAKES, sorted_ahead, partial(same_at, offsets=sorted_ahead)) or (
+        f"For (5, 3, 1) you get {octile(5, 3, 1):.3f}. Which five moves make the shortest way, and how long are they?"
     )
 
 
-def speed_after(
-    height: float, mass: float, drag_area: float, air_density: float, factor: float = 2.0, power: float = 0.5
-) -> float:
-    """The right speed; with other factors in the exponent, or another power, some of the wrong ones."""
-    terminal = 2 * mass * GRAVITY / (drag_area * air_density)
-    return float((terminal * -math.expm1(-factor * GRAVITY * height / terminal)) ** power)
+def same_at(octile: Callable[..., float], wanted: Sequence[float], offsets: Sequence[Move]) -> bool:
+    """Whether a function gives these distances; it is asked no further than the first that is wrong."""
+    given = itertools.starmap(octile, offsets)
+    return each_alike(given, wanted, partial(math.isclose, rel_tol=1e-9, abs_tol=1e-9))
 
 
-def speed_without_density(height: float, mass: float, drag_area: float, air_density: float) -> float:
-    """As in RISK-ACO, but with the right factor: the density is lost."""
-    return speed_after(height, mass, drag_area, 1.0)
+def is_octile(octile: Callable[..., float], offsets: Sequence[Move]) -> bool:
+    return same_at(octile, [octile_distance(*offset) for offset in offsets], offsets)
 
 
-def speed_in_time(height: float, mass: float, drag_area: float, air_density: float) -> float:
-    """V∞ tanh(g t / V∞), right at a time, with the time of a fall without air."""
-    terminal = math.sqrt(2 * mass * GRAVITY / (drag_area * air_density))
-    return terminal * math.tanh(math.sqrt(2 * GRAVITY * height) / terminal)
+def octile_distance(dx: int, dy: int, dz: int) -> float:
+    c, b, a = sorted((abs(dx), abs(dy), abs(dz)))
+    return math.sqrt(3) * c + math.sqrt(2) * (b - c) + (a - b)
 
 
-FALL_MISTAKES: list[tuple[Callable[[float, float, float, float], float], str]] = [
+OCTILE_MISTAKES: list[tuple[Callable[[int, int, int], float], str]] = [
     (
-        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, factor=1.0),
-        "That is the formula as it is printed. Drop the wreck by a few centimetres: does its V² go to 2 g h?",
+        math.hypot,
+        "That is the straight distance. It is never too high, but (2, 1, 0) shows that no two moves are as short: "
+        "count in moves.",
     ),
     (
-        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, 1.0, factor=1.0),
-        "That is RISK-ACO's formula as printed. Give your result a unit: what has been lost? And after a few "
-        "centimetres, does V² go to 2 g h?",
+        lambda a, b, c: a + b + c,
+        "That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.",
     ),
     (
-        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, factor=4.0),
-        "After a few centimetres your V² is 4 g h: more energy than gravity has given.",
+        lambda a, b, c: a,
+        "That is the number of moves. They are not equally long: how long is one through a corner?",
     ),
     (
-        lambda height, mass, drag_area, air_density: math.sqrt(2 * GRAVITY * height),
-        "That is a fall without air. How much of the energy does the drag take away on the next metre?",
+        lambda a, b, c: a + (math.sqrt(2) - 1) * b,
+        "You get the same for (5, 3, 1) as for (5, 3, 0). That is the octile distance of a plane: where is the height?",
     ),
     (
-        lambda height, mass, drag_area, air_density: math.sqrt(2 * mass * GRAVITY / (drag_area * air_density)),
-        "That is the terminal speed, which a very long fall leads to. How near to it is the wreck after `height`?",
+        lambda a, b, c: a + math.sqrt(2) * b + math.sqrt(3) * c,
+        "Too high: a move through a corner goes forward in all three directions at once. How much of the other two "
+        "is left after c of them?",
     ),
     (
-        lambda height, mass, drag_area, air_density: speed_in_time(height, mass, drag_area, air_density),
-        "That is the speed after the time that a fall without air takes. Does the wreck need the same time for it?",
-    ),
-    (
-        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, power=1.0),
-        "That is the square of the speed: energy obeys the simple equation, and the question is for the speed.",
-    ),
-    (
-        speed_without_density,
-        "In half the air the wreck must fall faster, and yours doesn't care: where is the density?",
+        lambda a, b, c: math.sqrt(2) * c + math.sqrt(3) * (b - c) + (a - b),
+        "Almost: which move is √2 long, and which one √3?",
     ),
 ]
 
 
-def exercise_2(answer: Callable[[float, float], float]) -> str:
-    """05.2: the chance that a blow kills, in the open too."""
-    given = [answer(*blow) for blow in BLOWS]
-    if any(chance is None for chance in given):
-        return NOTHING
-    if not same(given, [chance_to_die(*blow) for blow in BLOWS]):
-        return recognised(given, FATALITY_MISTAKES, BLOWS, same) or (
-            f"Behind shelter 0.5 a blow of 555 J kills with {answer(555.0, 0.5):.4f}, you say. Two tests: 10⁶ J must "
-            "kill one in two there, and at 34 J the shelter must make no difference."
+def exercise_2(legal: Callable[[np.ndarray, Move, Move], bool]) -> str:
+    """05.2: whether a move is legal: every voxel of its bounding box lies in the map and is free."""
+    rng = np.random.default_rng(62)
+    maps = [rng.random((5, 5, 5)) < share for share in (0.1, 0.2, 0.3)]
+    cases = [
+        (occupied, (i, j, k), move)
+        for occupied in maps
+        for i, j, k in np.argwhere(~occupied).tolist()
+        for move in MOVES
+    ]
+    within = [case for case in cases if is_inside(case[0], target_of(*case[1:]))]
+    beyond = [case for case in cases if not is_inside(case[0], target_of(*case[1:]))]
+    answers = [bool(legal(*case)) for case in within]
+    if answers != [box_is_free(*case) for case in within]:
+        if hint := recognised(answers, LEGAL_MISTAKES, within, operator.eq):
+            return hint
+        wrong = next(case for case, answer in zip(within, answers, strict=True) if answer != box_is_free(*case))
+        blocked = int(sum(wrong[0][voxel] for voxel in box_of(*wrong[1:])))
+        return (
+            f"From {wrong[1]} by {wrong[2]} there are {blocked} occupied voxels in the move's bounding box of "
+            f"{len(box_of(*wrong[1:]))}, and you say {not box_is_free(*wrong)}."
         )
     try:
-        limits = [answer(*blow) for blow in IN_THE_OPEN]
-    except ZeroDivisionError:
+        allowed = [case for case in beyond if legal(*case)]
+    except IndexError:
+        return "Inside of the map it is right. At its upper borders it raises IndexError: is the target on the map?"
+    if allowed:
+        node, move = allowed[0][1:]
         return (
-            "With shelter it is right. In the open it divides by zero: what does the power go to when the shelter goes "
-            "to 0, for energies below β and above it?"
+            f"Inside of the map it is right. But you let the UAV leave it: from {node} by {move} is no voxel. "
+            "(To NumPy the index −1 is the last voxel, on the far side.)"
         )
-    except OverflowError:
-        return "With shelter it is right. In the open the power grows without bound: what does the chance go to then?"
-    if any(chance is None for chance in limits):
-        return "With shelter it is right. In the open your function returns nothing."
-    if same(limits, [0, 0, 1, 1, 1]):
-        return ""
-    if same(limits, [1, 1, 1, 1, 1]):
-        return "With shelter it is right. In the open you let every blow kill, one of 5 J too. What does β mean?"
-    if same(limits, [1, 1, 0, 0, 0]):
-        return "With shelter it is right. In the open it is the wrong way round: more energy can't kill less."
-    return (
-        f"With shelter it is right. In the open you have {limits[1]:.3g} for 33 J and {limits[2]:.3g} for 35 J. Let "
-        "the shelter go to 0: what remains of a number below 1 to a power without bound, and of one above 1?"
-    )
+    return ""
 
 
-def chance_to_die(energy: float, shelter: float) -> float:
-    root = math.sqrt(EVEN_ODDS_ENERGY / LEAST_FATAL_ENERGY)
-    return 1 / (1 + root * (LEAST_FATAL_ENERGY / energy) ** (1 / (4 * shelter)))
+def target_of(node: Move, move: Move) -> Move:
+    return node[0] + move[0], node[1] + move[1], node[2] + move[2]
 
 
-FATALITY_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
+def is_inside(occupied: np.ndarray, voxel: Move) -> bool:
+    return all(0 <= index < size for index, size in zip(voxel, occupied.shape, strict=True))
+
+
+def box_of(node: Move, move: Move) -> list[Move]:
+    """The voxels of a move's bounding box."""
+    return [target_of(node, part) for part in itertools.product(*({0, d} for d in move))]
+
+
+def box_is_free(occupied: np.ndarray, node: Move, move: Move) -> bool:
+    return not any(occupied[voxel] for voxel in box_of(node, move))
+
+
+def faces_are_free(occupied: np.ndarray, node: Move, move: Move) -> bool:
+    """The target and the voxels across the faces that the move leaves by, but not those across edges."""
+    faces = [target_of(node, (move[0], 0, 0)), target_of(node, (0, move[1], 0)), target_of(node, (0, 0, move[2]))]
+    return not any(occupied[voxel] for voxel in [*faces, target_of(node, move)])
+
+
+LEGAL_MISTAKES: list[tuple[Callable[[np.ndarray, Move, Move], bool], str]] = [
     (
-        lambda energy, shelter: 1 / (1 + math.sqrt(1e6 / 34 * (34 / energy) ** (1 / (4 * shelter)))),
-        "With your bracket the root covers the power as well, and 10⁶ J kill 7 % behind shelter 0.5. How many should "
-        "it be, by the meaning of α?",
+        lambda occupied, node, move: not occupied[target_of(node, move)],
+        "You look at the voxel where the move ends, and nowhere else: that cuts corners. Which voxels does a "
+        "diagonal move touch on its way?",
     ),
     (
-        lambda energy, shelter: 1 / (1 + math.sqrt(1e6 / 34) * (energy / 34) ** (1 / (4 * shelter))),
-        "The harder the blow, the fewer you let die: which way up is the fraction of the energies?",
+        faces_are_free,
+        "Straight and diagonal moves are right. A move through a corner passes edges, too: its bounding box has eight "
+        "voxels, you look at five of them.",
     ),
     (
-        lambda energy, shelter: 1 / (1 + 1e6 / 34 * (34 / energy) ** (1 / (4 * shelter))),
-        "There is a root over α/β. Without it 10⁶ J kill hardly anybody behind shelter 0.5.",
-    ),
-    (
-        lambda energy, shelter: 1 / (1 + math.sqrt(34 / 1e6) * (34 / energy) ** (1 / (4 * shelter))),
-        "Behind shelter 0.5 your blow of 34 J kills 99 %: which of α and β is the larger, and which stands above?",
-    ),
-    (
-        lambda energy, shelter: 1 / (1 + math.sqrt(1e6 / 34) * (34 / energy) ** (shelter / 4)),
-        "With more energy than β a better shelter must protect better, and yours does the opposite: mind the brackets "
-        "in the exponent.",
-    ),
-    (
-        lambda energy, shelter: chance_to_die(energy, 1.0),
-        "Your chance is the same behind every shelter.",
+        lambda occupied, node, move: not box_is_free(occupied, node, move),
+        "It is the wrong way round: `occupied` is True where there is an obstacle.",
     ),
 ]
 
 
-def exercise_3(answer: Callable[[np.ndarray, np.ndarray, float, float], float]) -> str:
-    """05.3: expected deaths on a route over a risk map."""
-    missions = [random_mission(seed) for seed in range(6)]
-    given = [answer(rate.copy(), voxels.copy(), cell, speed) for rate, voxels, cell, speed in missions]
-    if any(cost is None for cost in given):
-        return NOTHING
-    if any(np.shape(cost) != () for cost in given):
-        return "The answer must be one number: the parts of the route still have to be added up."
-    if same(given, [expected_deaths(*mission) for mission in missions], relative=1e-6):
-        return ""
-    if hint := recognised(given, ROUTE_MISTAKES, missions, same):
-        return hint
-    level = np.full((3, 1, 1), 3.6)
-    straight = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0)])
-    cost = float(answer(level, straight, 5.0, 10.0))
-    if math.isclose(cost, 0.001, rel_tol=1e-6):
-        return (
-            "Where the rate is the same everywhere, two straight moves are right. How long is a move over an edge, or "
-            "through a corner? And with which rates is each move flown?"
-        )
-    return (
-        "Take a map with 3.6 deaths per hour everywhere, and two moves of 5 m at 10 m/s: one second. That makes 0.001, "
-        f"and you get {cost:.4g}."
-    )
+def zero(place: Any) -> float:
+    """An estimate that knows nothing."""
+    return 0.0
 
 
-def expected_deaths(rate: np.ndarray, voxels: np.ndarray, cell: float, speed: float) -> float:
-    return route_integral(rate, voxels, 0.5) * cell / (3600 * speed)
-
-
-def route_integral(rate: np.ndarray, voxels: np.ndarray, begin: float) -> float:
-    """∫ r ds [cells/h] with this share of each leg at the rate where it begins, the rest at that where it ends."""
-    lengths = np.linalg.norm(np.diff(voxels, axis=0), axis=1)
-    along = rate[tuple(voxels.T)]
-    return float(lengths @ (begin * along[:-1] + (1 - begin) * along[1:]))
-
-
-def random_mission(seed: int) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """A map, a route of 20 moves that doesn't visit a voxel twice, a cell and a speed."""
-    rng = np.random.default_rng([53, seed])
-    moves = np.column_stack([np.ones(20, dtype=int), rng.integers(-1, 2, (20, 2))])
-    voxels = np.array([0, 25, 25]) + np.vstack([np.zeros(3, dtype=int), np.cumsum(moves, axis=0)])
-    return rng.lognormal(-14.0, 1.5, (25, 50, 50)), voxels, float(rng.uniform(2, 10)), float(rng.uniform(5, 20))
-
-
-def cells_passed(rate: np.ndarray, voxels: np.ndarray, cell: float, speed: float) -> float:
-    """Σ r, as the papers have it."""
-    return float(rate[tuple(voxels.T)].sum())
-
-
-def legs_as_edges(rate: np.ndarray, voxels: np.ndarray, cell: float, speed: float) -> float:
-    """All moves as long as a straight one."""
-    along = rate[tuple(voxels.T)]
-    return float((along[:-1] + along[1:]).sum() / 2) * cell / (3600 * speed)
-
-
-ROUTE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray, float, float], float], str]] = [
+TRAPS: list[tuple[Graph, str, Callable[[Any], float], float, str]] = [
     (
-        cells_passed,
-        "That is the papers' sum over the voxels: rates per hour, added up. For how long is the UAV in each voxel?",
+        {"a": {"b": 1.0}, "b": {"c": 1.0}, "c": {}},
+        "c",
+        {"a": 2.0, "b": 1.0, "c": 0.0}.__getitem__,
+        2.0,
+        "The only way is a–b–c, twice 1 long, and the estimate is exact: your cost is {}. "
+        "What has been added to g that is no road?",
     ),
     (
-        lambda rate, voxels, cell, speed: cells_passed(rate, voxels, cell, speed) * cell / (3600 * speed),
-        "You give every voxel the time of one straight move. Diagonals take longer, and the first and the last voxel "
-        "are flown through only by half.",
+        {"a": {"b": 1.0, "c": 4.0}, "b": {"d": 3.0}, "c": {"d": 1.0}, "d": {}},
+        "d",
+        {"a": 4.0, "b": 3.0, "c": 1.0, "d": 0.0}.__getitem__,
+        4.0,
+        "a–b–d is 1 + 3 long, a–c–d is 4 + 1: your cost is {}. c is nearer to the goal than b, but the way to "
+        "it is longer. In which order do nodes come out of the open list?",
     ),
     (
-        legs_as_edges,
-        "You count all moves as equally long. How long is one over an edge, or through a corner?",
+        {"a": {"b": 5.0, "c": 1.0}, "b": {"d": 1.0}, "c": {"b": 1.0}, "d": {}},
+        "d",
+        zero,
+        3.0,
+        "a–b is 5, a–c and c–b are 1 each, b–d is 1: your cost from a to d is {}. "
+        "The direct way to b is found first. What happens when a better one turns up while b still waits?",
     ),
     (
-        lambda rate, voxels, cell, speed: route_integral(rate, voxels, 0.0) * cell / (3600 * speed),
-        "You take the rate of the voxel that a move leads to, for the whole move. In which voxels does it run?",
+        {"a": {"c": 10.0, "b": 1.0}, "b": {"c": 1.0}, "c": {}},
+        "c",
+        zero,
+        2.0,
+        "a–c is 10, a–b and b–c are 1 each: your cost from a to c is {}. When is the way to the goal known to "
+        "be the cheapest: when the goal is put into the open list, or when it is taken out?",
     ),
     (
-        lambda rate, voxels, cell, speed: route_integral(rate, voxels, 1.0) * cell / (3600 * speed),
-        "You take the rate of the voxel where a move begins, for the whole move. In which voxels does it run?",
-    ),
-    (
-        lambda rate, voxels, cell, speed: (
-            float(rate[tuple(voxels.T)].mean()) * expected_deaths(np.ones(rate.shape), voxels, cell, speed)
-        ),
-        "You multiply the mean rate by the whole time. Is the UAV in each voxel equally long?",
-    ),
-    (
-        lambda rate, voxels, cell, speed: 2 * expected_deaths(rate, voxels, cell, speed),
-        "Twice too much: each move is counted in full in both of its voxels.",
-    ),
-    (
-        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * 3600,
-        "You are off by the same factor for all routes: the rate is per hour, and metres by metres per second are "
-        "seconds.",
-    ),
-    (
-        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * 60,
-        "You are off by the same factor for all routes: an hour has more than 60 seconds.",
-    ),
-    (
-        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) / cell,
-        "Your lengths are in cells. How long is a move in metres?",
-    ),
-    (
-        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * speed,
-        "How fast the UAV flies makes no difference for you. Who is longer above a crowd?",
-    ),
-    (
-        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * speed**2,
-        "The faster your UAV flies, the more die. How long is it above each place?",
-    ),
-    (
-        lambda rate, voxels, cell, speed: route_integral(rate, voxels, 0.5),
-        "That is ∫ r ds in cells, the scale of the papers, and not yet deaths: how many metres is it, and how long "
-        "does the UAV take for them?",
+        {"a": {}, "b": {}},
+        "b",
+        zero,
+        math.inf,
+        "Where there is no way the cost is infinite: return math.inf when the open list is empty.",
     ),
 ]
+"""Roads, the goal, an estimate, the cost from a, and what a search with another cost should be asked."""
+
+
+def exercise_3(search: Callable[[Graph, Any, Any, Callable[[Any], float]], float]) -> str:
+    """05.3: the cost of the cheapest way through a graph, by an A* that is right."""
+    for number, (roads, goal, estimate_of, right, hint) in enumerate(TRAPS):
+        own_roads = {place: dict(ways) for place, ways in roads.items()}  # a search may cross out what it has seen
+        cost = search(own_roads, "a", goal, estimate_of)
+        if cost is None and number == 0:
+            return "Your search returns nothing: its answer is the cost of the cheapest way."
+        if cost != right:
+            return hint.format(cost)
+    for seed in range(40):
+        graph, estimate = random_roads(seed)
+        cost, cheapest = search(graph, 0, 11, estimate.__getitem__), cheapest_way(graph, 0, 11)
+        if not math.isclose(cost, cheapest, rel_tol=1e-9):
+            return (
+                f"On a map of 12 places the cheapest way costs {cheapest:.3f}, yours {cost:.3f}. Go through the proof "
+                "in the notebook: which step doesn't hold for your search?"
+            )
+    return ""
+
+
+def random_roads(seed: int) -> tuple[Graph, dict[int, float]]:
+    """Roads between 12 random places, and the straight distance from each to the last."""
+    rng = np.random.default_rng(seed)
+    places = rng.random((12, 2))
+    graph: dict[int, dict[int, float]] = {place: {} for place in range(12)}
+    for one, other in itertools.combinations(range(12), 2):
+        if rng.random() < 0.4:
+            graph[one][other] = graph[other][one] = float(math.dist(places[one], places[other]) * rng.uniform(1, 2))
+    return graph, {place: math.dist(places[place], places[11]) for place in range(12)}
+
+
+def cheapest_way(graph: Graph, start: Any, goal: Any) -> float:
+    """Cost of the cheapest way: as many rounds over all roads as there are places (Bellman and Ford)."""
+    cost = dict.fromkeys(graph, math.inf) | {start: 0.0}
+    for _ in graph:
+        for place, roads in graph.items():
+            for neighbour, length in roads.items():
+                cost[neighbour] = min(cost[neighbour], cost[place] + length)
+    return cost[goal]

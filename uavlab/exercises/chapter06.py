@@ -1,4 +1,4 @@
-"""Exercises of chapter 6, A*: the octile distance, legal moves, and a broken search to repair.
+"""Exercises of chapter 6, the potential field: the push of a voxel, where a wall stops the UAV, and the best move.
 
 A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
 by how they are written.
@@ -9,244 +9,255 @@ from __future__ import annotations
 import itertools
 import math
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
-from uavlab.exercises.hints import each_alike, recognised
+from uavlab.exercises.hints import alike, each_alike, recognised
+from uavlab.planners import repulsion
 
+Vector = Sequence[float] | np.ndarray
 Move = tuple[int, ...]
-Graph = Mapping[Any, Mapping[Any, float]]
 
 MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if any(move)]
 
 
-def exercise_1(octile: Callable[[int, int, int], float]) -> str:
-    """06.1: the shortest way over 26 moves on an empty map, from the differences of the coordinates."""
-    sorted_ahead = [(5, 3, 1), (7, 7, 2), (9, 4, 4), (6, 0, 0), (3, 3, 3), (8, 2, 0), (0, 0, 0)]
-    if is_octile(octile, sorted_ahead):
-        shuffled = [order for offset in sorted_ahead for order in itertools.permutations(offset)]
-        if not is_octile(octile, shuffled):
-            return "It is right where |dx| ≥ |dy| ≥ |dz|. The goal may lie anywhere: which of the three is largest?"
-        mirrored = [tuple(s * d for s, d in zip(sign, o, strict=True)) for sign in MOVES for o in shuffled if all(sign)]
-        if not is_octile(octile, mirrored):
-            return (
-                "It is right for goals to the north-east and above. What are dx, dy, dz when the goal lies to the west?"
-            )
+def exercise_1(push_of_voxel: Callable[..., np.ndarray]) -> str:
+    """06.1: the force of one voxel on a UAV at a point."""
+    rng = np.random.default_rng(71)
+    lows = rng.integers(-5, 5, (60, 3))
+    offsets = rng.uniform(-4, 4, (60, 3))
+    points = np.where(offsets > 0, lows + 1 + offsets, lows + offsets)
+    points[::4, 0] = lows[::4, 0] + 0.3  # beside a face or an edge, too
+    questions = [(point, low, 7.0, 4.0) for point, low in zip(points, lows, strict=True)]
+    answers = [push_of_voxel(*question) for question in questions]
+    if any(answer is None for answer in answers):
+        return "Your function returns nothing for some points: beyond the reach the force is a vector of zeros."
+    within = np.array([distance_to_voxel(*question[:2]) <= 4.0 for question in questions])
+    numbers = np.array([np.ndim(answer) == 0 for answer in answers])
+    if numbers[within].any():
+        return (
+            "You return a number. A size can't steer: away from which point is the UAV pushed, and in which direction?"
+        )
+    if numbers.any():
+        return "Beyond the reach you return a number: no force is a vector, too, of three zeros."
+    if any(np.shape(answer) != (3,) for answer in answers):
+        return f"The force is a vector of three numbers, yours has the shape {np.shape(answers[0])}."
+    given = np.array(answers, dtype=float)
+    same = partial(alike, relative=1e-9, absolute=1e-12)
+    near, far = (list(itertools.compress(questions, chosen)) for chosen in (within, ~within))
+    if same(given[within], [push_within_reach(*question) for question in near]):
+        if same(given[~within], [push_everywhere(*question) for question in far]):
+            return "Right within the reach. Beyond it your voxel attracts: what is the sign of 1/D − 1/R there?"
+        if not same(given[~within], [push_within_reach(*question) for question in far]):
+            return "Right within the reach. How large is the force beyond it?"
         return ""
-    return recognised(octile, OCTILE_MISTAKES, sorted_ahead, partial(same_at, offsets=sorted_ahead)) or (
-        f"For (5, 3, 1) you get {octile(5, 3, 1):.3f}. Which five moves make the shortest way, and how long are they?"
+    if hint := recognised(given[within], PUSH_MISTAKES, near, same):
+        return hint
+    point, low = (3.0, 0.5, 0.5), (0, 0, 0)
+    size = float(np.linalg.norm(push_of_voxel(point, low, 7.0, 4.0)))
+    return (
+        f"2 m east of a voxel, with k_rep = 7 and R = 4 m, your force has the size {size:.4f}. Go through it by hand: "
+        "the voxel's nearest point, the distance to it, the size of the push, its direction."
     )
 
 
-def same_at(octile: Callable[..., float], wanted: Sequence[float], offsets: Sequence[Move]) -> bool:
-    """Whether a function gives these distances; it is asked no further than the first that is wrong."""
-    given = itertools.starmap(octile, offsets)
-    return each_alike(given, wanted, partial(math.isclose, rel_tol=1e-9, abs_tol=1e-9))
+def away_from_voxel(point: Vector, low: Vector) -> np.ndarray:
+    """From the nearest point of a voxel with edges of 1 m."""
+    return np.asarray(point, dtype=float) - np.clip(point, low, np.add(low, 1))
 
 
-def is_octile(octile: Callable[..., float], offsets: Sequence[Move]) -> bool:
-    return same_at(octile, [octile_distance(*offset) for offset in offsets], offsets)
+def distance_to_voxel(point: Vector, low: Vector) -> float:
+    return float(np.linalg.norm(away_from_voxel(point, low)))
 
 
-def octile_distance(dx: int, dy: int, dz: int) -> float:
-    c, b, a = sorted((abs(dx), abs(dy), abs(dz)))
-    return math.sqrt(3) * c + math.sqrt(2) * (b - c) + (a - b)
+def push_along(away: np.ndarray, push: float, reach: float) -> np.ndarray:
+    """The push as its formula has it, at any distance."""
+    distance = np.linalg.norm(away)
+    return push * (1 / distance - 1 / reach) / distance**3 * away
 
 
-OCTILE_MISTAKES: list[tuple[Callable[[int, int, int], float], str]] = [
+def push_everywhere(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
+    return push_along(away_from_voxel(point, low), push, reach)
+
+
+def push_within_reach(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
+    return push_everywhere(point, low, push, reach) * (distance_to_voxel(point, low) <= reach)
+
+
+def push_from_center(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
+    return push_along(np.asarray(point, dtype=float) - np.add(low, 0.5), push, reach)
+
+
+def push_from_center_within_reach(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
+    away = np.asarray(point, dtype=float) - np.add(low, 0.5)
+    return push_along(away, push, reach) * (np.linalg.norm(away) <= reach)
+
+
+def push_from_corner(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
+    return push_along(np.subtract(point, low).astype(float), push, reach)
+
+
+def push_from_corner_within_reach(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
+    return push_from_corner(point, low, push, reach) * (np.linalg.norm(np.subtract(point, low)) <= reach)
+
+
+CENTER = "You measure from the voxel's centre. It is a cube: which of its points is nearest to the UAV?"
+CORNER = "You measure from the voxel's lowest corner. It is a cube: which of its points is nearest to the UAV?"
+PUSH_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
     (
-        math.hypot,
-        "That is the straight distance. It is never too high, but (2, 1, 0) shows that no two moves are as short: "
-        "count in moves.",
+        lambda *q: -push_everywhere(*q),
+        "The size is right, but your voxel attracts. From where to where does the vector point?",
     ),
     (
-        lambda a, b, c: a + b + c,
-        "That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.",
+        lambda *q: push_everywhere(*q) * distance_to_voxel(*q[:2]),
+        "The direction is right. Its vector is as long as the distance, so the force gets D times too large: what is "
+        "a direction's length?",
     ),
+    (push_from_center, CENTER),
+    (push_from_center_within_reach, CENTER),
+    (push_from_corner, CORNER),
+    (push_from_corner_within_reach, CORNER),
     (
-        lambda a, b, c: a,
-        "That is the number of moves. They are not equally long: how long is one through a corner?",
-    ),
-    (
-        lambda a, b, c: a + (math.sqrt(2) - 1) * b,
-        "You get the same for (5, 3, 1) as for (5, 3, 0). That is the octile distance of a plane: where is the height?",
-    ),
-    (
-        lambda a, b, c: a + math.sqrt(2) * b + math.sqrt(3) * c,
-        "Too high: a move through a corner goes forward in all three directions at once. How much of the other two "
-        "is left after c of them?",
-    ),
-    (
-        lambda a, b, c: math.sqrt(2) * c + math.sqrt(3) * (b - c) + (a - b),
-        "Almost: which move is √2 long, and which one √3?",
+        lambda point, low, push, reach: (
+            push_everywhere(point, low, push, reach)
+            * distance_to_voxel(point, low) ** 2
+            * (1 / distance_to_voxel(point, low) - 1 / reach)
+            / 2
+        ),
+        "That has the size of the potential. The force is its slope: where does the factor 1/D² come from?",
     ),
 ]
 
 
-def exercise_2(legal: Callable[[np.ndarray, Move, Move], bool]) -> str:
-    """06.2: whether a move is legal: every voxel of its bounding box lies in the map and is free."""
-    rng = np.random.default_rng(62)
-    maps = [rng.random((5, 5, 5)) < share for share in (0.1, 0.2, 0.3)]
-    cases = [
-        (occupied, (i, j, k), move)
-        for occupied in maps
-        for i, j, k in np.argwhere(~occupied).tolist()
-        for move in MOVES
-    ]
-    within = [case for case in cases if is_inside(case[0], target_of(*case[1:]))]
-    beyond = [case for case in cases if not is_inside(case[0], target_of(*case[1:]))]
-    answers = [bool(legal(*case)) for case in within]
-    if answers != [box_is_free(*case) for case in within]:
-        if hint := recognised(answers, LEGAL_MISTAKES, within, operator.eq):
-            return hint
-        wrong = next(case for case, answer in zip(within, answers, strict=True) if answer != box_is_free(*case))
-        blocked = int(sum(wrong[0][voxel] for voxel in box_of(*wrong[1:])))
+def exercise_2(balance: Callable[[float, float, float], float]) -> str:
+    """06.2: the distance at which pull and push cancel, in front of a wall."""
+    questions = [
+        (1.0, 5.0, 5.0), (2.0, 5.0, 5.0), (1.0, 500.0, 5.0), (1.0, 5.0, 12.0), (0.3, 80.0, 2.5), (40.0, 0.7, 3.0),
+    ]  # fmt: skip
+    answers = [balance(*question) for question in questions]
+    if any(answer is None for answer in answers):
+        return "Your function returns nothing: its answer is the distance [m]."
+    if any(np.ndim(answer) != 0 for answer in answers):
+        return f"The answer is one number, yours has the shape {np.shape(answers[0])}."
+    same = partial(each_alike, same=partial(math.isclose, abs_tol=1e-6))
+    if same(answers, [stopping_distance(*question) for question in questions]):
+        return ""
+    if hint := recognised(answers, BALANCE_MISTAKES, questions, same):
+        return hint
+    pull, push, reach = questions[0]
+    if not 0 < answers[0] <= reach:
+        return f"For a pull of 1, k_rep = 5 and R = 5 m you get {answers[0]:.4g} m. Between which two must it lie?"
+    there = float(repulsion(answers[0], push, reach))
+    if math.isclose(there, pull, rel_tol=1e-2):
         return (
-            f"From {wrong[1]} by {wrong[2]} there are {blocked} occupied voxels in the move's bounding box of "
-            f"{len(box_of(*wrong[1:]))}, and you say {not box_is_free(*wrong)}."
+            f"Nearly: at your {answers[0]:.6f} m the push is {there:.6f}, the pull {pull:g}. It has to be more exact."
         )
-    try:
-        allowed = [case for case in beyond if legal(*case)]
-    except IndexError:
-        return "Inside of the map it is right. At its upper borders it raises IndexError: is the target on the map?"
-    if allowed:
-        node, move = allowed[0][1:]
-        return (
-            f"Inside of the map it is right. But you let the UAV leave it: from {node} by {move} is no voxel. "
-            "(To NumPy the index −1 is the last voxel, on the far side.)"
-        )
-    return ""
+    return (
+        f"For a pull of {pull:g}, k_rep = {push:g} and R = {reach:g} m you get {answers[0]:.4f} m. There the push is "
+        f"{there:.3f}: too {'much' if there > pull else 'little'} to cancel the pull."
+    )
 
 
-def target_of(node: Move, move: Move) -> Move:
-    return node[0] + move[0], node[1] + move[1], node[2] + move[2]
+def stopping_distance(pull: float, push: float, reach: float) -> float:
+    return float(brentq(lambda distance: float(repulsion(distance, push, reach)) - pull, 1e-9, reach, xtol=1e-12))
 
 
-def is_inside(occupied: np.ndarray, voxel: Move) -> bool:
-    return all(0 <= index < size for index, size in zip(voxel, occupied.shape, strict=True))
-
-
-def box_of(node: Move, move: Move) -> list[Move]:
-    """The voxels of a move's bounding box."""
-    return [target_of(node, part) for part in itertools.product(*({0, d} for d in move))]
-
-
-def box_is_free(occupied: np.ndarray, node: Move, move: Move) -> bool:
-    return not any(occupied[voxel] for voxel in box_of(node, move))
-
-
-def faces_are_free(occupied: np.ndarray, node: Move, move: Move) -> bool:
-    """The target and the voxels across the faces that the move leaves by, but not those across edges."""
-    faces = [target_of(node, (move[0], 0, 0)), target_of(node, (0, move[1], 0)), target_of(node, (0, 0, move[2]))]
-    return not any(occupied[voxel] for voxel in [*faces, target_of(node, move)])
-
-
-LEGAL_MISTAKES: list[tuple[Callable[[np.ndarray, Move, Move], bool], str]] = [
+BALANCE_MISTAKES: list[tuple[Callable[[float, float, float], float], str]] = [
     (
-        lambda occupied, node, move: not occupied[target_of(node, move)],
-        "You look at the voxel where the move ends, and nowhere else: that cuts corners. Which voxels does a "
-        "diagonal move touch on its way?",
+        lambda pull, push, reach: math.cbrt(push / pull),
+        "That is where k_rep / D³ equals the pull. It is right for a reach without end: what does 1/R take away?",
     ),
     (
-        faces_are_free,
-        "Straight and diagonal moves are right. A move through a corner passes edges, too: its bounding box has eight "
-        "voxels, you look at five of them.",
+        lambda pull, push, reach: stopping_distance(1.0, push, reach),
+        "It doesn't depend on the pull. Should the UAV not come nearer when the goal pulls harder?",
     ),
     (
-        lambda occupied, node, move: not box_is_free(occupied, node, move),
-        "It is the wrong way round: `occupied` is True where there is an obstacle.",
+        lambda pull, push, reach: 1 / (math.sqrt(2 * pull / push) + 1 / reach),
+        "That is where the potential of the wall is as large as the pull. What cancels is forces: their slopes.",
+    ),
+    (
+        lambda pull, push, reach: 1 / (pull / push + 1 / reach),
+        "You solve k_rep (1/D − 1/R) = pull. Which factor of the push is missing?",
+    ),
+    (
+        lambda pull, push, reach: reach,
+        "At its reach the push is 0, and the pull goes on. How near does the UAV come before the push is as large?",
     ),
 ]
 
 
-def zero(place: Any) -> float:
-    """An estimate that knows nothing."""
-    return 0.0
-
-
-TRAPS: list[tuple[Graph, str, Callable[[Any], float], float, str]] = [
-    (
-        {"a": {"b": 1.0}, "b": {"c": 1.0}, "c": {}},
-        "c",
-        {"a": 2.0, "b": 1.0, "c": 0.0}.__getitem__,
-        2.0,
-        "The only way is a–b–c, twice 1 long, and the estimate is exact: your cost is {}. "
-        "What has been added to g that is no road?",
-    ),
-    (
-        {"a": {"b": 1.0, "c": 4.0}, "b": {"d": 3.0}, "c": {"d": 1.0}, "d": {}},
-        "d",
-        {"a": 4.0, "b": 3.0, "c": 1.0, "d": 0.0}.__getitem__,
-        4.0,
-        "a–b–d is 1 + 3 long, a–c–d is 4 + 1: your cost is {}. c is nearer to the goal than b, but the way to "
-        "it is longer. In which order do nodes come out of the open list?",
-    ),
-    (
-        {"a": {"b": 5.0, "c": 1.0}, "b": {"d": 1.0}, "c": {"b": 1.0}, "d": {}},
-        "d",
-        zero,
-        3.0,
-        "a–b is 5, a–c and c–b are 1 each, b–d is 1: your cost from a to d is {}. "
-        "The direct way to b is found first. What happens when a better one turns up while b still waits?",
-    ),
-    (
-        {"a": {"c": 10.0, "b": 1.0}, "b": {"c": 1.0}, "c": {}},
-        "c",
-        zero,
-        2.0,
-        "a–c is 10, a–b and b–c are 1 each: your cost from a to c is {}. When is the way to the goal known to "
-        "be the cheapest: when the goal is put into the open list, or when it is taken out?",
-    ),
-    (
-        {"a": {}, "b": {}},
-        "b",
-        zero,
-        math.inf,
-        "Where there is no way the cost is infinite: return math.inf when the open list is empty.",
-    ),
-]
-"""Roads, the goal, an estimate, the cost from a, and what a search with another cost should be asked."""
-
-
-def exercise_3(search: Callable[[Graph, Any, Any, Callable[[Any], float]], float]) -> str:
-    """06.3: the cost of the cheapest way through a graph, by an A* that is right."""
-    for number, (roads, goal, estimate_of, right, hint) in enumerate(TRAPS):
-        own_roads = {place: dict(ways) for place, ways in roads.items()}  # a search may cross out what it has seen
-        cost = search(own_roads, "a", goal, estimate_of)
-        if cost is None and number == 0:
-            return "Your search returns nothing: its answer is the cost of the cheapest way."
-        if cost != right:
-            return hint.format(cost)
-    for seed in range(40):
-        graph, estimate = random_roads(seed)
-        cost, cheapest = search(graph, 0, 11, estimate.__getitem__), cheapest_way(graph, 0, 11)
-        if not math.isclose(cost, cheapest, rel_tol=1e-9):
+def exercise_3(best_move: Callable[[Vector, list[Move]], Any]) -> str:
+    """06.3: the legal move with the smallest angle to the force, or None."""
+    rng = np.random.default_rng(73)
+    forces = rng.standard_normal((200, 3)) * 10 ** rng.uniform(-2, 2, (200, 1))
+    legal = [[MOVES[n] for n in rng.permutation(26)[: rng.integers(3, 26)]] for _ in forces]
+    questions = list(zip(forces, legal, strict=True))
+    answers = [best_move(force, list(moves)) for force, moves in questions]
+    chosen = [None if answer is None else tuple(np.ravel(answer).tolist()) for answer in answers]
+    wanted = [smallest_angle(*question) for question in questions]
+    if all(answer is None for answer in chosen):
+        return "Your function always returns None, also when a move leads straight along the force."
+    strange = [a for a, (_, moves) in zip(chosen, questions, strict=True) if a is not None and a not in moves]
+    if strange:
+        return f"You return {strange[0]}, which is not among the legal moves: choose one of those that you are given."
+    open_way = [n for n, move in enumerate(wanted) if move is not None]
+    if all(chosen[n] == wanted[n] for n in open_way):
+        if chosen != wanted:
             return (
-                f"On a map of 12 places the cheapest way costs {cheapest:.3f}, yours {cost:.3f}. Go through the proof "
-                "in the notebook: which step doesn't hold for your search?"
+                "Where there is a way on, it is right. But when all legal moves lead sideways or back you take one of "
+                "them, against the force. What does the UAV do at the bottom of a pond?"
             )
-    return ""
+        if best_move((1.0, 0.0, 0.0), [(0, 1, 0), (0, 0, -1)]) is not None:
+            return "A move at 90° to the force gains nothing, and you take it: it should be below 90°."
+        return "" if best_move((1.0, 0.0, 0.0), []) is None else "Without a legal move there is none to return: None."
+    answered = [n for n in open_way if chosen[n] is not None]
+    moves_taken = [chosen[n] for n in answered]
+    if hint := recognised(moves_taken, MOVE_MISTAKES, [questions[n] for n in answered], operator.eq):
+        return hint
+    n = next(n for n in open_way if chosen[n] != wanted[n])
+    force, moves = questions[n]
+    given = "None" if chosen[n] is None else f"{chosen[n]}, at {angle_deg(force, chosen[n]):.0f}°"
+    return (
+        f"The force is ({', '.join(f'{part:.2f}' for part in force)}), {len(moves)} moves are legal, and you return "
+        f"{given}. The smallest angle is {min(angle_deg(force, move) for move in moves):.0f}°."
+    )
 
 
-def random_roads(seed: int) -> tuple[Graph, dict[int, float]]:
-    """Roads between 12 random places, and the straight distance from each to the last."""
-    rng = np.random.default_rng(seed)
-    places = rng.random((12, 2))
-    graph: dict[int, dict[int, float]] = {place: {} for place in range(12)}
-    for one, other in itertools.combinations(range(12), 2):
-        if rng.random() < 0.4:
-            graph[one][other] = graph[other][one] = float(math.dist(places[one], places[other]) * rng.uniform(1, 2))
-    return graph, {place: math.dist(places[place], places[11]) for place in range(12)}
+def angle_deg(force: Vector, move: Any) -> float:
+    cosine = np.dot(force, move) / (np.linalg.norm(force) * np.linalg.norm(move))
+    return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
 
 
-def cheapest_way(graph: Graph, start: Any, goal: Any) -> float:
-    """Cost of the cheapest way: as many rounds over all roads as there are places (Bellman and Ford)."""
-    cost = dict.fromkeys(graph, math.inf) | {start: 0.0}
-    for _ in graph:
-        for place, roads in graph.items():
-            for neighbour, length in roads.items():
-                cost[neighbour] = min(cost[neighbour], cost[place] + length)
-    return cost[goal]
+def smallest_angle(force: Vector, moves: list[Move]) -> Move | None:
+    best = min(moves, key=lambda move: angle_deg(force, move))
+    return best if angle_deg(force, best) < 90 else None
+
+
+MOVE_MISTAKES: list[tuple[Callable[[Vector, list[Move]], Move], str]] = [
+    (
+        lambda force, moves: max(moves, key=lambda move: float(np.dot(force, move))),
+        "You take the largest scalar product. A move through a corner is √3 long, and that makes its product large at "
+        "a large angle, too: what is left of it when the length is taken out?",
+    ),
+    (
+        lambda force, moves: max(moves, key=lambda move: angle_deg(force, move)),
+        "You take the largest angle: uphill. Which sign has the scalar product along the force?",
+    ),
+    (
+        lambda force, moves: min(moves, key=lambda move: float(np.linalg.norm(np.subtract(force, move)))),
+        "You take the move that ends nearest to the force's tip. That depends on how large the force is; only its "
+        "direction should count.",
+    ),
+    (
+        lambda force, moves: next(move for move in moves if float(np.dot(force, move)) > 0),
+        "You take the first move that leads downhill. There may be a better one among the rest.",
+    ),
+    (
+        lambda force, moves: max(moves, key=lambda move: float(np.dot(force, move)) / float(np.dot(move, move))),
+        "You divide by the squared length. To get the direction of a move, by what is it divided?",
+    ),
+]

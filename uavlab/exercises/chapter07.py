@@ -1,4 +1,4 @@
-"""Exercises of chapter 7, the potential field: the push of a voxel, where a wall stops the UAV, and the best move.
+"""Exercises of chapter 7, REPARE: the price of a metre, Table 3 as a score, and a boundary that doesn't flutter.
 
 A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
 by how they are written.
@@ -6,258 +6,262 @@ by how they are written.
 
 from __future__ import annotations
 
-import itertools
 import math
-import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any
+from itertools import product
 
 import numpy as np
-from scipy.optimize import brentq
 
 from uavlab.exercises.hints import alike, each_alike, recognised
 from uavlab.planners import repulsion
+from uavlab.resilience import DISTURBANCES, LEVELS, LOADS, ConditionCheck, resilience_level
 
-Vector = Sequence[float] | np.ndarray
-Move = tuple[int, ...]
+Vector = tuple[float, float]
+Price = Callable[[float, float, Vector, Vector, float], float]
 
-MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if any(move)]
+ANGLES = np.linspace(0.0, 2 * np.pi, 9)
+NORMALS: list[Vector] = [(float(np.cos(angle)), float(np.sin(angle))) for angle in ANGLES]
+BEYOND = [(5.0, 3.5, (-0.4, 0.0), (1.0, 0.0), 0.6), (9.0, 5.5, (0.2, 0.1), (0.0, 1.0), 0.9)]
+CALM = [(d, 5.5, (0.0, 0.0), (1.0, 0.0), load) for d in (0.5, 1.5, 2.5, 3.5, 4.5) for load in (0.5, 0.9)]
+CALM += [(d, 3.5, (0.0, 0.0), (1.0, 0.0), 0.6) for d in (0.5, 1.5, 3.0)]
+WINDY = [(d, 5.5, (0.4, -0.1), normal, 0.6) for d in (1.5, 3.5, 4.5) for normal in NORMALS]
 
 
-def exercise_1(push_of_voxel: Callable[..., np.ndarray]) -> str:
-    """07.1: the force of one voxel on a UAV at a point."""
-    rng = np.random.default_rng(71)
-    lows = rng.integers(-5, 5, (60, 3))
-    offsets = rng.uniform(-4, 4, (60, 3))
-    points = np.where(offsets > 0, lows + 1 + offsets, lows + offsets)
-    points[::4, 0] = lows[::4, 0] + 0.3  # beside a face or an edge, too
-    questions = [(point, low, 7.0, 4.0) for point, low in zip(points, lows, strict=True)]
-    answers = [push_of_voxel(*question) for question in questions]
-    if any(answer is None for answer in answers):
-        return "Your function returns nothing for some points: beyond the reach the force is a vector of zeros."
-    within = np.array([distance_to_voxel(*question[:2]) <= 4.0 for question in questions])
-    numbers = np.array([np.ndim(answer) == 0 for answer in answers])
-    if numbers[within].any():
-        return (
-            "You return a number. A size can't steer: away from which point is the UAV pushed, and in which direction?"
+def exercise_1(price: Price) -> str:
+    """07.1: the price of a metre near a wall, with wind and load."""
+    in_calm = [price(*case) for case in CALM]
+    if any(answer is None for answer in in_calm):
+        return "Your function returns nothing: its answer is a price."
+    if not alike(in_calm, [right_price(*case) for case in CALM]):
+        without_wind = [(d, keep, load) for d, keep, _, _, load in CALM]
+        return recognised(in_calm, CALM_MISTAKES, without_wind, alike) or (
+            f"For {CALM[2][0]} m from a wall, D_min = 5.5 m, no wind and λ = 0.5 you get {float(in_calm[2]):.3f}. "
+            "Write the reasons in the bracket of Eq. 5 one below the other: how large is each?"
         )
-    if numbers.any():
-        return "Beyond the reach you return a number: no force is a vector, too, of three zeros."
-    if any(np.shape(answer) != (3,) for answer in answers):
-        return f"The force is a vector of three numbers, yours has the shape {np.shape(answers[0])}."
-    given = np.array(answers, dtype=float)
-    same = partial(alike, relative=1e-9, absolute=1e-12)
-    near, far = (list(itertools.compress(questions, chosen)) for chosen in (within, ~within))
-    if same(given[within], [push_within_reach(*question) for question in near]):
-        if same(given[~within], [push_everywhere(*question) for question in far]):
-            return "Right within the reach. Beyond it your voxel attracts: what is the sign of 1/D − 1/R there?"
-        if not same(given[~within], [push_within_reach(*question) for question in far]):
-            return "Right within the reach. How large is the force beyond it?"
+    outside = [price(*case) for case in BEYOND]
+    if not np.allclose(outside, 1.0):
+        return (
+            f"In the zone it is right. At {BEYOND[0][0]} m, with D_min = {BEYOND[0][1]} m, you get "
+            f"{float(outside[0]):.3f}: what is O_risk there?"
+        )
+    in_wind = [price(*case) for case in WINDY]
+    if alike(in_wind, [right_price(*case) for case in WINDY]):
         return ""
-    if hint := recognised(given[within], PUSH_MISTAKES, near, same):
-        return hint
-    point, low = (3.0, 0.5, 0.5), (0, 0, 0)
-    size = float(np.linalg.norm(push_of_voxel(point, low, 7.0, 4.0)))
-    return (
-        f"2 m east of a voxel, with k_rep = 7 and R = 4 m, your force has the size {size:.4f}. Go through it by hand: "
-        "the voxel's nearest point, the distance to it, the size of the push, its direction."
+    return recognised(in_wind, WIND_MISTAKES, WINDY, alike) or (
+        "Without wind it is right. With wind: which part of it points towards the wall, and what does the rest do?"
     )
 
 
-def away_from_voxel(point: Vector, low: Vector) -> np.ndarray:
-    """From the nearest point of a voxel with edges of 1 m."""
-    return np.asarray(point, dtype=float) - np.clip(point, low, np.add(low, 1))
+def pushed(distance: float, keep: float) -> float:
+    return float(repulsion(distance, keep**3 / 4, keep))
 
 
-def distance_to_voxel(point: Vector, low: Vector) -> float:
-    return float(np.linalg.norm(away_from_voxel(point, low)))
+def right_price(distance: float, keep: float, wind: Vector, normal: Vector, load: float) -> float:
+    if distance >= keep:
+        return 1.0
+    return 1 + 2 * (1 + pushed(distance, keep) + max(0.0, -float(np.dot(wind, normal))) + load)
 
 
-def push_along(away: np.ndarray, push: float, reach: float) -> np.ndarray:
-    """The push as its formula has it, at any distance."""
-    distance = np.linalg.norm(away)
-    return push * (1 / distance - 1 / reach) / distance**3 * away
-
-
-def push_everywhere(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
-    return push_along(away_from_voxel(point, low), push, reach)
-
-
-def push_within_reach(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
-    return push_everywhere(point, low, push, reach) * (distance_to_voxel(point, low) <= reach)
-
-
-def push_from_center(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
-    return push_along(np.asarray(point, dtype=float) - np.add(low, 0.5), push, reach)
-
-
-def push_from_center_within_reach(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
-    away = np.asarray(point, dtype=float) - np.add(low, 0.5)
-    return push_along(away, push, reach) * (np.linalg.norm(away) <= reach)
-
-
-def push_from_corner(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
-    return push_along(np.subtract(point, low).astype(float), push, reach)
-
-
-def push_from_corner_within_reach(point: Vector, low: Vector, push: float, reach: float) -> np.ndarray:
-    return push_from_corner(point, low, push, reach) * (np.linalg.norm(np.subtract(point, low)) <= reach)
-
-
-CENTER = "You measure from the voxel's centre. It is a cube: which of its points is nearest to the UAV?"
-CORNER = "You measure from the voxel's lowest corner. It is a cube: which of its points is nearest to the UAV?"
-PUSH_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
+CALM_MISTAKES: list[tuple[Callable[[float, float, float], float], str]] = [
     (
-        lambda *q: -push_everywhere(*q),
-        "The size is right, but your voxel attracts. From where to where does the vector point?",
+        lambda d, keep, load: 2 * (1 + pushed(d, keep) + load),
+        "That is ω. A metre also costs what it costs in the open.",
     ),
     (
-        lambda *q: push_everywhere(*q) * distance_to_voxel(*q[:2]),
-        "The direction is right. Its vector is as long as the distance, so the force gets D times too large: what is "
-        "a direction's length?",
+        lambda d, keep, load: 1 + 2 * (pushed(d, keep) + load),
+        "At the edge of your zone the wall's push is 0, and a UAV without weight would pay nothing. Which reason in "
+        "the bracket doesn't depend on anything?",
     ),
-    (push_from_center, CENTER),
-    (push_from_center_within_reach, CENTER),
-    (push_from_corner, CORNER),
-    (push_from_corner_within_reach, CORNER),
     (
-        lambda point, low, push, reach: (
-            push_everywhere(point, low, push, reach)
-            * distance_to_voxel(point, low) ** 2
-            * (1 / distance_to_voxel(point, low) - 1 / reach)
-            / 2
+        lambda d, keep, load: 1 + 2 * (1 + pushed(d, keep)),
+        "The load is missing: two UAVs of different weight pay the same.",
+    ),
+    (
+        lambda d, keep, load: 1 + 1 + pushed(d, keep) + load,
+        "The bracket is right. How is it weighed against the open?",
+    ),
+    (
+        lambda d, keep, load: 1 + 2 * (1 + keep**3 / 4 * (1 / d - 1 / keep) + load),
+        "Your push isn't the gradient of the potential: Eq. 1 has another factor that depends on the distance.",
+    ),
+    (
+        lambda d, keep, load: 1 + 2 * (1 + (1 / d - 1 / keep) / d**2 + load),
+        "You take k_rep for 1. It depends on D_min.",
+    ),
+]
+
+WIND_MISTAKES: list[tuple[Price, str]] = [
+    (
+        lambda d, keep, wind, normal, load: (
+            1 + 2 * (1 + pushed(d, keep) + max(0.0, float(np.dot(wind, normal))) + load)
         ),
-        "That has the size of the potential. The force is its slope: where does the factor 1/D² come from?",
+        "You charge for wind away from the wall, and not for wind towards it. Where does n point?",
+    ),
+    (
+        lambda d, keep, wind, normal, load: 1 + 2 * (1 + pushed(d, keep) - float(np.dot(wind, normal)) + load),
+        "Wind away from the wall makes your metre cheaper. It may turn: what does Eq. 5 do with it?",
+    ),
+    (
+        lambda d, keep, wind, normal, load: 1 + 2 * (1 + pushed(d, keep) + abs(float(np.dot(wind, normal))) + load),
+        "Wind away from the wall costs you as much as wind towards it. Only one of them is dangerous.",
+    ),
+    (
+        lambda d, keep, wind, normal, load: 1 + 2 * (1 + pushed(d, keep) + math.hypot(*wind) + load),
+        "You take the whole wind. Wind along the wall doesn't bring the UAV nearer to it.",
+    ),
+    (
+        lambda d, keep, wind, normal, load: (
+            1 + 2 * (1 + load + math.hypot(*(pushed(d, keep) * n + w for n, w in zip(normal, wind, strict=True))))
+        ),
+        "You take the size of the sum of two forces. That is way 2: look at what it does when they point against each "
+        "other.",
+    ),
+    (
+        lambda d, keep, wind, normal, load: right_price(d, keep, (0.0, 0.0), normal, load),
+        "Without wind it is right, and with wind it is the same: where is F_dist?",
     ),
 ]
 
 
-def exercise_2(balance: Callable[[float, float, float], float]) -> str:
-    """07.2: the distance at which pull and push cancel, in front of a wall."""
-    questions = [
-        (1.0, 5.0, 5.0), (2.0, 5.0, 5.0), (1.0, 500.0, 5.0), (1.0, 5.0, 12.0), (0.3, 80.0, 2.5), (40.0, 0.7, 3.0),
-    ]  # fmt: skip
-    answers = [balance(*question) for question in questions]
-    if any(answer is None for answer in answers):
-        return "Your function returns nothing: its answer is the distance [m]."
-    if any(np.ndim(answer) != 0 for answer in answers):
-        return f"The answer is one number, yours has the shape {np.shape(answers[0])}."
-    same = partial(each_alike, same=partial(math.isclose, abs_tol=1e-6))
-    if same(answers, [stopping_distance(*question) for question in questions]):
-        return ""
-    if hint := recognised(answers, BALANCE_MISTAKES, questions, same):
-        return hint
-    pull, push, reach = questions[0]
-    if not 0 < answers[0] <= reach:
-        return f"For a pull of 1, k_rep = 5 and R = 5 m you get {answers[0]:.4g} m. Between which two must it lie?"
-    there = float(repulsion(answers[0], push, reach))
-    if math.isclose(there, pull, rel_tol=1e-2):
+def exercise_2(score: Callable[[], tuple[Mapping[str, float], Mapping[str, float], Sequence[float]]]) -> str:
+    """07.2: points for loads and disturbances and thresholds that give Table 3."""
+    answer = score()
+    if answer is None:
+        return "Your function returns nothing: its answer is two dictionaries and four thresholds."
+    if len(answer) != 3:
         return (
-            f"Nearly: at your {answers[0]:.6f} m the push is {there:.6f}, the pull {pull:g}. It has to be more exact."
+            f"The answer has three parts: points by load, points by disturbance, thresholds. Yours has {len(answer)}."
         )
+    loads, disturbances, thresholds = answer
+    for what, given, wanted in (("load", loads, LOADS), ("disturbance", disturbances, DISTURBANCES)):
+        missing = [name for name in wanted if name not in given]
+        if missing:
+            return f"There are no points for the {what} {missing[0]!r}."
+    if len(thresholds) != 4:
+        return f"Five levels have four thresholds between them; you have {len(thresholds)}."
+    if list(thresholds) != sorted(thresholds):
+        return "The thresholds must rise, from that of 'lower' to that of 'grounded'."
+    wrong = []
+    for load, disturbance in product(LOADS, DISTURBANCES):
+        points = loads[load] + disturbances[disturbance]
+        level, wanted_level = LEVELS[sum(points >= t for t in thresholds)], resilience_level(load, disturbance)
+        if level != wanted_level:
+            wrong.append((load, disturbance, points, level, wanted_level))
+    if not wrong:
+        return ""
+    if all(LEVELS.index(level) == LEVELS.index(wanted) - 1 for *_, points, level, wanted in wrong) and all(
+        points in thresholds for _, _, points, _, _ in wrong
+    ):
+        return "A sum that equals a threshold belongs to the level above it."
+    load, disturbance, points, level, wanted_level = wrong[0]
     return (
-        f"For a pull of {pull:g}, k_rep = {push:g} and R = {reach:g} m you get {answers[0]:.4f} m. There the push is "
-        f"{there:.3f}: too {'much' if there > pull else 'little'} to cancel the pull."
+        f"{16 - len(wrong)} of 16 are right. The sum for {load} load in {disturbance} disturbance is {points:g}: "
+        f"that is {level!r}; Table 3 has {wanted_level!r}. Which entries with that level have a sum like it?"
     )
 
 
-def stopping_distance(pull: float, push: float, reach: float) -> float:
-    return float(brentq(lambda distance: float(repulsion(distance, push, reach)) - pull, 1e-9, reach, xtol=1e-12))
-
-
-BALANCE_MISTAKES: list[tuple[Callable[[float, float, float], float], str]] = [
-    (
-        lambda pull, push, reach: math.cbrt(push / pull),
-        "That is where k_rep / D³ equals the pull. It is right for a reach without end: what does 1/R take away?",
-    ),
-    (
-        lambda pull, push, reach: stopping_distance(1.0, push, reach),
-        "It doesn't depend on the pull. Should the UAV not come nearer when the goal pulls harder?",
-    ),
-    (
-        lambda pull, push, reach: 1 / (math.sqrt(2 * pull / push) + 1 / reach),
-        "That is where the potential of the wall is as large as the pull. What cancels is forces: their slopes.",
-    ),
-    (
-        lambda pull, push, reach: 1 / (pull / push + 1 / reach),
-        "You solve k_rep (1/D − 1/R) = pull. Which factor of the push is missing?",
-    ),
-    (
-        lambda pull, push, reach: reach,
-        "At its reach the push is 0, and the pull goes on. How near does the UAV come before the push is as large?",
-    ),
-]
-
-
-def exercise_3(best_move: Callable[[Vector, list[Move]], Any]) -> str:
-    """07.3: the legal move with the smallest angle to the force, or None."""
-    rng = np.random.default_rng(73)
-    forces = rng.standard_normal((200, 3)) * 10 ** rng.uniform(-2, 2, (200, 1))
-    legal = [[MOVES[n] for n in rng.permutation(26)[: rng.integers(3, 26)]] for _ in forces]
-    questions = list(zip(forces, legal, strict=True))
-    answers = [best_move(force, list(moves)) for force, moves in questions]
-    chosen = [None if answer is None else tuple(np.ravel(answer).tolist()) for answer in answers]
-    wanted = [smallest_angle(*question) for question in questions]
-    if all(answer is None for answer in chosen):
-        return "Your function always returns None, also when a move leads straight along the force."
-    strange = [a for a, (_, moves) in zip(chosen, questions, strict=True) if a is not None and a not in moves]
-    if strange:
-        return f"You return {strange[0]}, which is not among the legal moves: choose one of those that you are given."
-    open_way = [n for n, move in enumerate(wanted) if move is not None]
-    if all(chosen[n] == wanted[n] for n in open_way):
-        if chosen != wanted:
-            return (
-                "Where there is a way on, it is right. But when all legal moves lead sideways or back you take one of "
-                "them, against the force. What does the UAV do at the bottom of a pond?"
-            )
-        if best_move((1.0, 0.0, 0.0), [(0, 1, 0), (0, 0, -1)]) is not None:
-            return "A move at 90° to the force gains nothing, and you take it: it should be below 90°."
-        return "" if best_move((1.0, 0.0, 0.0), []) is None else "Without a legal move there is none to return: None."
-    answered = [n for n in open_way if chosen[n] is not None]
-    moves_taken = [chosen[n] for n in answered]
-    if hint := recognised(moves_taken, MOVE_MISTAKES, [questions[n] for n in answered], operator.eq):
+def exercise_3(boundaries: Callable[[Sequence[float], float, float, int, float], Sequence[float]]) -> str:
+    """07.3: the boundary after each offset, raised at once and lowered with hysteresis."""
+    example = boundaries([1, 2.7, 1, 1, 1, 1], 2, 0.5, 3, 0.8)
+    if example is None:
+        return "Your function returns nothing: its answer is a list with a boundary for each offset."
+    if len(example) != 6:
+        return f"There are six offsets in the example, and you return {len(example)} boundaries."
+    cases = [[1, 2.7, 1, 1, 1, 1], *([float(o) for o in offsets_seen(seed)] for seed in range(6))]
+    answers = [np.asarray(boundaries(case, 2.0, 0.5, 3, 0.8), dtype=float) for case in cases]
+    same = partial(each_alike, same=np.allclose)
+    if same(answers, [checked(case) for case in cases]):
+        return ""
+    if hint := recognised(answers, BOUNDARY_MISTAKES, [(case,) for case in cases], same):
         return hint
-    n = next(n for n in open_way if chosen[n] != wanted[n])
-    force, moves = questions[n]
-    given = "None" if chosen[n] is None else f"{chosen[n]}, at {angle_deg(force, chosen[n]):.0f}°"
+    case, answer = next((c, a) for c, a in zip(cases, answers, strict=True) if not np.allclose(a, checked(c)))
+    first = int(np.argmax(~np.isclose(answer, checked(case))))
+    before = checked(case)[first - 1] if first else 2.0
     return (
-        f"The force is ({', '.join(f'{part:.2f}' for part in force)}), {len(moves)} moves are legal, and you return "
-        f"{given}. The smallest angle is {min(angle_deg(force, move) for move in moves):.0f}°."
+        f"After {', '.join(f'{offset:.2f}' for offset in case[max(first - 3, 0) : first + 1])} m (the last offsets, up "
+        f"to number {first + 1}) the boundary of {before:g} m should {'rise' if case[first] > before else 'not be'}"
+        f"{'' if case[first] > before else f' {answer[first]:g} m'}. Go through the three rules for this moment."
     )
 
 
-def angle_deg(force: Vector, move: Any) -> float:
-    cosine = np.dot(force, move) / (np.linalg.norm(force) * np.linalg.norm(move))
-    return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
+def offsets_seen(seed: int) -> np.ndarray:
+    """Offsets of a flight with a gusty part in the middle [m], no two rules at a tie."""
+    rng = np.random.default_rng(800 + seed)
+    gusty = np.concatenate([np.full(10, 0.6), np.full(10, 2.2), np.full(40, 0.9)])
+    return np.abs(rng.normal(0.0, gusty)).round(3) + 3e-4
 
 
-def smallest_angle(force: Vector, moves: list[Move]) -> Move | None:
-    best = min(moves, key=lambda move: angle_deg(force, move))
-    return best if angle_deg(force, best) < 90 else None
+def checked(case: Sequence[float]) -> list[float]:
+    check = ConditionCheck(predicted=2.0, step=0.5, hold=3.0, release=0.8)
+    return [check.observe(float(moment), float(offset)) for moment, offset in enumerate(case)]
 
 
-MOVE_MISTAKES: list[tuple[Callable[[Vector, list[Move]], Move], str]] = [
+def walked(
+    case: Sequence[float],
+    *,
+    hold: int = 3,
+    lower_by: int = 1,
+    release: float = 0.8,
+    one_step: bool = False,
+    floor: bool = True,
+    calm_of_boundary: bool = False,
+    in_a_row: bool = True,
+    fresh: bool = True,
+) -> list[float]:
+    """The boundary by rules that may be wrong."""
+    steps, calm, history = 0, 0, []
+    for offset in case:
+        boundary = 2.0 + 0.5 * steps
+        is_calm = offset < release * (boundary if calm_of_boundary else boundary - 0.5)
+        calm = calm + 1 if is_calm else 0 if in_a_row else calm
+        if offset > boundary:
+            steps, calm = (steps + 1 if one_step else math.ceil((offset - 2.0) / 0.5)), 0
+        elif (steps > 0 or not floor) and calm >= hold:
+            steps, calm = (max(steps - lower_by, 0) if floor else steps - lower_by), 0 if fresh else calm
+        history.append(2.0 + 0.5 * steps)
+    return history
+
+
+BOUNDARY_MISTAKES: list[tuple[Callable[[Sequence[float]], list[float]], str]] = [
     (
-        lambda force, moves: max(moves, key=lambda move: float(np.dot(force, move))),
-        "You take the largest scalar product. A move through a corner is √3 long, and that makes its product large at "
-        "a large angle, too: what is left of it when the length is taken out?",
+        lambda case: walked(case, hold=10**6),
+        "Your boundary never comes down: one gust in the first minute, and the whole flight is as careful as that.",
     ),
     (
-        lambda force, moves: max(moves, key=lambda move: angle_deg(force, move)),
-        "You take the largest angle: uphill. Which sign has the scalar product along the force?",
+        lambda case: walked(case, hold=1),
+        "It comes down after the first calm observation: that is fluttering. How many have to be calm, one after "
+        "another?",
     ),
     (
-        lambda force, moves: min(moves, key=lambda move: float(np.linalg.norm(np.subtract(force, move)))),
-        "You take the move that ends nearest to the force's tip. That depends on how large the force is; only its "
-        "direction should count.",
+        lambda case: walked(case, one_step=True),
+        "After a large offset your boundary is still below it. By how many steps does it have to rise?",
     ),
     (
-        lambda force, moves: next(move for move in moves if float(np.dot(force, move)) > 0),
-        "You take the first move that leads downhill. There may be a better one among the rest.",
+        lambda case: walked(case, floor=False),
+        "In a long calm your boundary falls below what was predicted.",
     ),
     (
-        lambda force, moves: max(moves, key=lambda move: float(np.dot(force, move)) / float(np.dot(move, move))),
-        "You divide by the squared length. To get the direction of a move, by what is it divided?",
+        lambda case: walked(case, lower_by=10**6),
+        "It comes down to the prediction at once. Down it goes by one step at a time.",
+    ),
+    (
+        lambda case: walked(case, calm_of_boundary=True),
+        "You call an offset calm when it is well below the boundary that holds. It would then be near the lower one "
+        "and push it up again: calm must be measured there.",
+    ),
+    (
+        lambda case: walked(case, release=1.0),
+        "You compare with the lower boundary itself. An offset just below it would soon exceed it: what is `release` "
+        "for?",
+    ),
+    (
+        lambda case: walked(case, in_a_row=False),
+        "You count all calm observations since the last change. They have to follow each other: what does a gust "
+        "between them do to the count?",
+    ),
+    (
+        lambda case: walked(case, fresh=False),
+        "After one step down the next follows at once. From what is the calm counted?",
     ),
 ]

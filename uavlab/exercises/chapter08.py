@@ -1,267 +1,294 @@
-"""Exercises of chapter 8, REPARE: the price of a metre, Table 3 as a score, and a boundary that doesn't flutter.
+"""Exercises of chapter 8, risk maps: the speed of a fall, the chance that a blow kills, the deaths that a route costs.
 
-A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
-by how they are written.
+A mistake is recognised by what it answers; its hint says why that can't be.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
-from itertools import product
+from typing import Any
 
 import numpy as np
 
-from uavlab.exercises.hints import alike, each_alike, recognised
-from uavlab.planners import repulsion
-from uavlab.resilience import DISTURBANCES, LEVELS, LOADS, ConditionCheck, resilience_level
+from uavlab.exercises.hints import NOTHING, each_alike, recognised
 
-Vector = tuple[float, float]
-Price = Callable[[float, float, Vector, Vector, float], float]
-
-ANGLES = np.linspace(0.0, 2 * np.pi, 9)
-NORMALS: list[Vector] = [(float(np.cos(angle)), float(np.sin(angle))) for angle in ANGLES]
-BEYOND = [(5.0, 3.5, (-0.4, 0.0), (1.0, 0.0), 0.6), (9.0, 5.5, (0.2, 0.1), (0.0, 1.0), 0.9)]
-CALM = [(d, 5.5, (0.0, 0.0), (1.0, 0.0), load) for d in (0.5, 1.5, 2.5, 3.5, 4.5) for load in (0.5, 0.9)]
-CALM += [(d, 3.5, (0.0, 0.0), (1.0, 0.0), 0.6) for d in (0.5, 1.5, 3.0)]
-WINDY = [(d, 5.5, (0.4, -0.1), normal, 0.6) for d in (1.5, 3.5, 4.5) for normal in NORMALS]
-
-
-def exercise_1(price: Price) -> str:
-    """08.1: the price of a metre near a wall, with wind and load."""
-    in_calm = [price(*case) for case in CALM]
-    if any(answer is None for answer in in_calm):
-        return "Your function returns nothing: its answer is a price."
-    if not alike(in_calm, [right_price(*case) for case in CALM]):
-        without_wind = [(d, keep, load) for d, keep, _, _, load in CALM]
-        return recognised(in_calm, CALM_MISTAKES, without_wind, alike) or (
-            f"For {CALM[2][0]} m from a wall, D_min = 5.5 m, no wind and λ = 0.5 you get {float(in_calm[2]):.3f}. "
-            "Write the reasons in the bracket of Eq. 5 one below the other: how large is each?"
-        )
-    outside = [price(*case) for case in BEYOND]
-    if not np.allclose(outside, 1.0):
-        return (
-            f"In the zone it is right. At {BEYOND[0][0]} m, with D_min = {BEYOND[0][1]} m, you get "
-            f"{float(outside[0]):.3f}: what is O_risk there?"
-        )
-    in_wind = [price(*case) for case in WINDY]
-    if alike(in_wind, [right_price(*case) for case in WINDY]):
-        return ""
-    return recognised(in_wind, WIND_MISTAKES, WINDY, alike) or (
-        "Without wind it is right. With wind: which part of it points towards the wall, and what does the rest do?"
-    )
-
-
-def pushed(distance: float, keep: float) -> float:
-    return float(repulsion(distance, keep**3 / 4, keep))
-
-
-def right_price(distance: float, keep: float, wind: Vector, normal: Vector, load: float) -> float:
-    if distance >= keep:
-        return 1.0
-    return 1 + 2 * (1 + pushed(distance, keep) + max(0.0, -float(np.dot(wind, normal))) + load)
-
-
-CALM_MISTAKES: list[tuple[Callable[[float, float, float], float], str]] = [
-    (
-        lambda d, keep, load: 2 * (1 + pushed(d, keep) + load),
-        "That is ω. A metre also costs what it costs in the open.",
-    ),
-    (
-        lambda d, keep, load: 1 + 2 * (pushed(d, keep) + load),
-        "At the edge of your zone the wall's push is 0, and a UAV without weight would pay nothing. Which reason in "
-        "the bracket doesn't depend on anything?",
-    ),
-    (
-        lambda d, keep, load: 1 + 2 * (1 + pushed(d, keep)),
-        "The load is missing: two UAVs of different weight pay the same.",
-    ),
-    (
-        lambda d, keep, load: 1 + 1 + pushed(d, keep) + load,
-        "The bracket is right. How is it weighed against the open?",
-    ),
-    (
-        lambda d, keep, load: 1 + 2 * (1 + keep**3 / 4 * (1 / d - 1 / keep) + load),
-        "Your push isn't the gradient of the potential: Eq. 1 has another factor that depends on the distance.",
-    ),
-    (
-        lambda d, keep, load: 1 + 2 * (1 + (1 / d - 1 / keep) / d**2 + load),
-        "You take k_rep for 1. It depends on D_min.",
-    ),
+GRAVITY = 9.81
+FALLS = [
+    (0.0, 1.38, 0.3 * 0.0188, 1.225),
+    (0.5, 1.38, 0.3 * 0.0188, 1.225),
+    (30.0, 1.38, 0.3 * 0.0188, 1.225),
+    (30.0, 1.38, 0.06, 1.225),
+    (120.0, 2.5, 0.04, 0.9),
 ]
+"""Height, mass, drag area, air density."""
 
-WIND_MISTAKES: list[tuple[Price, str]] = [
-    (
-        lambda d, keep, wind, normal, load: (
-            1 + 2 * (1 + pushed(d, keep) + max(0.0, float(np.dot(wind, normal))) + load)
-        ),
-        "You charge for wind away from the wall, and not for wind towards it. Where does n point?",
-    ),
-    (
-        lambda d, keep, wind, normal, load: 1 + 2 * (1 + pushed(d, keep) - float(np.dot(wind, normal)) + load),
-        "Wind away from the wall makes your metre cheaper. It may turn: what does Eq. 5 do with it?",
-    ),
-    (
-        lambda d, keep, wind, normal, load: 1 + 2 * (1 + pushed(d, keep) + abs(float(np.dot(wind, normal))) + load),
-        "Wind away from the wall costs you as much as wind towards it. Only one of them is dangerous.",
-    ),
-    (
-        lambda d, keep, wind, normal, load: 1 + 2 * (1 + pushed(d, keep) + math.hypot(*wind) + load),
-        "You take the whole wind. Wind along the wall doesn't bring the UAV nearer to it.",
-    ),
-    (
-        lambda d, keep, wind, normal, load: (
-            1 + 2 * (1 + load + math.hypot(*(pushed(d, keep) * n + w for n, w in zip(normal, wind, strict=True))))
-        ),
-        "You take the size of the sum of two forces. That is way 2: look at what it does when they point against each "
-        "other.",
-    ),
-    (
-        lambda d, keep, wind, normal, load: right_price(d, keep, (0.0, 0.0), normal, load),
-        "Without wind it is right, and with wind it is the same: where is F_dist?",
-    ),
-]
+EVEN_ODDS_ENERGY, LEAST_FATAL_ENERGY = 1e6, 34.0
+BLOWS = [(energy, shelter) for energy in (5.0, 34.0, 100.0, 555.0, 1e4, 1e6) for shelter in (0.25, 0.5, 0.75, 1.0)]
+IN_THE_OPEN = [(5.0, 0.0), (33.0, 0.0), (35.0, 0.0), (555.0, 0.0), (1e7, 0.0)]
 
 
-def exercise_2(score: Callable[[], tuple[Mapping[str, float], Mapping[str, float], Sequence[float]]]) -> str:
-    """08.2: points for loads and disturbances and thresholds that give Table 3."""
-    answer = score()
-    if answer is None:
-        return "Your function returns nothing: its answer is two dictionaries and four thresholds."
-    if len(answer) != 3:
-        return (
-            f"The answer has three parts: points by load, points by disturbance, thresholds. Yours has {len(answer)}."
-        )
-    loads, disturbances, thresholds = answer
-    for what, given, wanted in (("load", loads, LOADS), ("disturbance", disturbances, DISTURBANCES)):
-        missing = [name for name in wanted if name not in given]
-        if missing:
-            return f"There are no points for the {what} {missing[0]!r}."
-    if len(thresholds) != 4:
-        return f"Five levels have four thresholds between them; you have {len(thresholds)}."
-    if list(thresholds) != sorted(thresholds):
-        return "The thresholds must rise, from that of 'lower' to that of 'grounded'."
-    wrong = []
-    for load, disturbance in product(LOADS, DISTURBANCES):
-        points = loads[load] + disturbances[disturbance]
-        level, wanted_level = LEVELS[sum(points >= t for t in thresholds)], resilience_level(load, disturbance)
-        if level != wanted_level:
-            wrong.append((load, disturbance, points, level, wanted_level))
-    if not wrong:
+def same(given: Sequence[Any], right: Sequence[float], relative: float = 1e-9) -> bool:
+    return each_alike(map(float, given), right, partial(math.isclose, rel_tol=relative, abs_tol=1e-15))
+
+
+def exercise_1(answer: Callable[[float, float, float, float], float]) -> str:
+    """08.1: vertical speed after a fall from rest with drag."""
+    given = [answer(*fall) for fall in FALLS]
+    if any(speed is None for speed in given):
+        return NOTHING
+    if any(np.shape(speed) != () for speed in given):
+        return "The answer must be one number, the speed in m/s."
+    same_speeds = partial(same, relative=1e-3)  # g = 9.8 m/s² is right too
+    if same_speeds(given, [speed_after(*fall) for fall in FALLS]):
         return ""
-    if all(LEVELS.index(level) == LEVELS.index(wanted) - 1 for *_, points, level, wanted in wrong) and all(
-        points in thresholds for _, _, points, _, _ in wrong
-    ):
-        return "A sum that equals a threshold belongs to the level above it."
-    load, disturbance, points, level, wanted_level = wrong[0]
-    return (
-        f"{16 - len(wrong)} of 16 are right. The sum for {load} load in {disturbance} disturbance is {points:g}: "
-        f"that is {level!r}; Table 3 has {wanted_level!r}. Which entries with that level have a sum like it?"
-    )
-
-
-def exercise_3(boundaries: Callable[[Sequence[float], float, float, int, float], Sequence[float]]) -> str:
-    """08.3: the boundary after each offset, raised at once and lowered with hysteresis."""
-    example = boundaries([1, 2.7, 1, 1, 1, 1], 2, 0.5, 3, 0.8)
-    if example is None:
-        return "Your function returns nothing: its answer is a list with a boundary for each offset."
-    if len(example) != 6:
-        return f"There are six offsets in the example, and you return {len(example)} boundaries."
-    cases = [[1, 2.7, 1, 1, 1, 1], *([float(o) for o in offsets_seen(seed)] for seed in range(6))]
-    answers = [np.asarray(boundaries(case, 2.0, 0.5, 3, 0.8), dtype=float) for case in cases]
-    same = partial(each_alike, same=np.allclose)
-    if same(answers, [checked(case) for case in cases]):
-        return ""
-    if hint := recognised(answers, BOUNDARY_MISTAKES, [(case,) for case in cases], same):
+    if hint := recognised(given, FALL_MISTAKES, FALLS, same_speeds):
         return hint
-    case, answer = next((c, a) for c, a in zip(cases, answers, strict=True) if not np.allclose(a, checked(c)))
-    first = int(np.argmax(~np.isclose(answer, checked(case))))
-    before = checked(case)[first - 1] if first else 2.0
+    if any(not np.isfinite(speed) for speed in given):
+        return "Some speeds are no finite number. What is under the root, and can it be negative?"
     return (
-        f"After {', '.join(f'{offset:.2f}' for offset in case[max(first - 3, 0) : first + 1])} m (the last offsets, up "
-        f"to number {first + 1}) the boundary of {before:g} m should {'rise' if case[first] > before else 'not be'}"
-        f"{'' if case[first] > before else f' {answer[first]:g} m'}. Go through the three rules for this moment."
+        f"After 30 m with 1.38 kg, 0.00564 m² and 1.225 kg/m³ you get {given[2]:.2f} m/s. Two tests: for a short fall "
+        "V² must go to 2 g h, and for a long one m g = ½ · drag area · air density · V²."
     )
 
 
-def offsets_seen(seed: int) -> np.ndarray:
-    """Offsets of a flight with a gusty part in the middle [m], no two rules at a tie."""
-    rng = np.random.default_rng(800 + seed)
-    gusty = np.concatenate([np.full(10, 0.6), np.full(10, 2.2), np.full(40, 0.9)])
-    return np.abs(rng.normal(0.0, gusty)).round(3) + 3e-4
+def speed_after(
+    height: float, mass: float, drag_area: float, air_density: float, factor: float = 2.0, power: float = 0.5
+) -> float:
+    """The right speed; with other factors in the exponent, or another power, some of the wrong ones."""
+    terminal = 2 * mass * GRAVITY / (drag_area * air_density)
+    return float((terminal * -math.expm1(-factor * GRAVITY * height / terminal)) ** power)
 
 
-def checked(case: Sequence[float]) -> list[float]:
-    check = ConditionCheck(predicted=2.0, step=0.5, hold=3.0, release=0.8)
-    return [check.observe(float(moment), float(offset)) for moment, offset in enumerate(case)]
+def speed_without_density(height: float, mass: float, drag_area: float, air_density: float) -> float:
+    """As in RISK-ACO, but with the right factor: the density is lost."""
+    return speed_after(height, mass, drag_area, 1.0)
 
 
-def walked(
-    case: Sequence[float],
-    *,
-    hold: int = 3,
-    lower_by: int = 1,
-    release: float = 0.8,
-    one_step: bool = False,
-    floor: bool = True,
-    calm_of_boundary: bool = False,
-    in_a_row: bool = True,
-    fresh: bool = True,
-) -> list[float]:
-    """The boundary by rules that may be wrong."""
-    steps, calm, history = 0, 0, []
-    for offset in case:
-        boundary = 2.0 + 0.5 * steps
-        is_calm = offset < release * (boundary if calm_of_boundary else boundary - 0.5)
-        calm = calm + 1 if is_calm else 0 if in_a_row else calm
-        if offset > boundary:
-            steps, calm = (steps + 1 if one_step else math.ceil((offset - 2.0) / 0.5)), 0
-        elif (steps > 0 or not floor) and calm >= hold:
-            steps, calm = (max(steps - lower_by, 0) if floor else steps - lower_by), 0 if fresh else calm
-        history.append(2.0 + 0.5 * steps)
-    return history
+def speed_in_time(height: float, mass: float, drag_area: float, air_density: float) -> float:
+    """V∞ tanh(g t / V∞), right at a time, with the time of a fall without air."""
+    terminal = math.sqrt(2 * mass * GRAVITY / (drag_area * air_density))
+    return terminal * math.tanh(math.sqrt(2 * GRAVITY * height) / terminal)
 
 
-BOUNDARY_MISTAKES: list[tuple[Callable[[Sequence[float]], list[float]], str]] = [
+FALL_MISTAKES: list[tuple[Callable[[float, float, float, float], float], str]] = [
     (
-        lambda case: walked(case, hold=10**6),
-        "Your boundary never comes down: one gust in the first minute, and the whole flight is as careful as that.",
+        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, factor=1.0),
+        "That is the formula as it is printed. Drop the wreck by a few centimetres: does its V² go to 2 g h?",
     ),
     (
-        lambda case: walked(case, hold=1),
-        "It comes down after the first calm observation: that is fluttering. How many have to be calm, one after "
-        "another?",
+        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, 1.0, factor=1.0),
+        "That is RISK-ACO's formula as printed. Give your result a unit: what has been lost? And after a few "
+        "centimetres, does V² go to 2 g h?",
     ),
     (
-        lambda case: walked(case, one_step=True),
-        "After a large offset your boundary is still below it. By how many steps does it have to rise?",
+        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, factor=4.0),
+        "After a few centimetres your V² is 4 g h: more energy than gravity has given.",
     ),
     (
-        lambda case: walked(case, floor=False),
-        "In a long calm your boundary falls below what was predicted.",
+        lambda height, mass, drag_area, air_density: math.sqrt(2 * GRAVITY * height),
+        "That is a fall without air. How much of the energy does the drag take away on the next metre?",
     ),
     (
-        lambda case: walked(case, lower_by=10**6),
-        "It comes down to the prediction at once. Down it goes by one step at a time.",
+        lambda height, mass, drag_area, air_density: math.sqrt(2 * mass * GRAVITY / (drag_area * air_density)),
+        "That is the terminal speed, which a very long fall leads to. How near to it is the wreck after `height`?",
     ),
     (
-        lambda case: walked(case, calm_of_boundary=True),
-        "You call an offset calm when it is well below the boundary that holds. It would then be near the lower one "
-        "and push it up again: calm must be measured there.",
+        lambda height, mass, drag_area, air_density: speed_in_time(height, mass, drag_area, air_density),
+        "That is the speed after the time that a fall without air takes. Does the wreck need the same time for it?",
     ),
     (
-        lambda case: walked(case, release=1.0),
-        "You compare with the lower boundary itself. An offset just below it would soon exceed it: what is `release` "
-        "for?",
+        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, power=1.0),
+        "That is the square of the speed: energy obeys the simple equation, and the question is for the speed.",
     ),
     (
-        lambda case: walked(case, in_a_row=False),
-        "You count all calm observations since the last change. They have to follow each other: what does a gust "
-        "between them do to the count?",
+        speed_without_density,
+        "In half the air the wreck must fall faster, and yours doesn't care: where is the density?",
+    ),
+]
+
+
+def exercise_2(answer: Callable[[float, float], float]) -> str:
+    """08.2: the chance that a blow kills, in the open too."""
+    given = [answer(*blow) for blow in BLOWS]
+    if any(chance is None for chance in given):
+        return NOTHING
+    if not same(given, [chance_to_die(*blow) for blow in BLOWS]):
+        return recognised(given, FATALITY_MISTAKES, BLOWS, same) or (
+            f"Behind shelter 0.5 a blow of 555 J kills with {answer(555.0, 0.5):.4f}, you say. Two tests: 10⁶ J must "
+            "kill one in two there, and at 34 J the shelter must make no difference."
+        )
+    try:
+        limits = [answer(*blow) for blow in IN_THE_OPEN]
+    except ZeroDivisionError:
+        return (
+            "With shelter it is right. In the open it divides by zero: what does the power go to when the shelter goes "
+            "to 0, for energies below β and above it?"
+        )
+    except OverflowError:
+        return "With shelter it is right. In the open the power grows without bound: what does the chance go to then?"
+    if any(chance is None for chance in limits):
+        return "With shelter it is right. In the open your function returns nothing."
+    if same(limits, [0, 0, 1, 1, 1]):
+        return ""
+    if same(limits, [1, 1, 1, 1, 1]):
+        return "With shelter it is right. In the open you let every blow kill, one of 5 J too. What does β mean?"
+    if same(limits, [1, 1, 0, 0, 0]):
+        return "With shelter it is right. In the open it is the wrong way round: more energy can't kill less."
+    return (
+        f"With shelter it is right. In the open you have {limits[1]:.3g} for 33 J and {limits[2]:.3g} for 35 J. Let "
+        "the shelter go to 0: what remains of a number below 1 to a power without bound, and of one above 1?"
+    )
+
+
+def chance_to_die(energy: float, shelter: float) -> float:
+    root = math.sqrt(EVEN_ODDS_ENERGY / LEAST_FATAL_ENERGY)
+    return 1 / (1 + root * (LEAST_FATAL_ENERGY / energy) ** (1 / (4 * shelter)))
+
+
+FATALITY_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
+    (
+        lambda energy, shelter: 1 / (1 + math.sqrt(1e6 / 34 * (34 / energy) ** (1 / (4 * shelter)))),
+        "With your bracket the root covers the power as well, and 10⁶ J kill 7 % behind shelter 0.5. How many should "
+        "it be, by the meaning of α?",
     ),
     (
-        lambda case: walked(case, fresh=False),
-        "After one step down the next follows at once. From what is the calm counted?",
+        lambda energy, shelter: 1 / (1 + math.sqrt(1e6 / 34) * (energy / 34) ** (1 / (4 * shelter))),
+        "The harder the blow, the fewer you let die: which way up is the fraction of the energies?",
+    ),
+    (
+        lambda energy, shelter: 1 / (1 + 1e6 / 34 * (34 / energy) ** (1 / (4 * shelter))),
+        "There is a root over α/β. Without it 10⁶ J kill hardly anybody behind shelter 0.5.",
+    ),
+    (
+        lambda energy, shelter: 1 / (1 + math.sqrt(34 / 1e6) * (34 / energy) ** (1 / (4 * shelter))),
+        "Behind shelter 0.5 your blow of 34 J kills 99 %: which of α and β is the larger, and which stands above?",
+    ),
+    (
+        lambda energy, shelter: 1 / (1 + math.sqrt(1e6 / 34) * (34 / energy) ** (shelter / 4)),
+        "With more energy than β a better shelter must protect better, and yours does the opposite: mind the brackets "
+        "in the exponent.",
+    ),
+    (
+        lambda energy, shelter: chance_to_die(energy, 1.0),
+        "Your chance is the same behind every shelter.",
+    ),
+]
+
+
+def exercise_3(answer: Callable[[np.ndarray, np.ndarray, float, float], float]) -> str:
+    """08.3: expected deaths on a route over a risk map."""
+    missions = [random_mission(seed) for seed in range(6)]
+    given = [answer(rate.copy(), voxels.copy(), cell, speed) for rate, voxels, cell, speed in missions]
+    if any(cost is None for cost in given):
+        return NOTHING
+    if any(np.shape(cost) != () for cost in given):
+        return "The answer must be one number: the parts of the route still have to be added up."
+    if same(given, [expected_deaths(*mission) for mission in missions], relative=1e-6):
+        return ""
+    if hint := recognised(given, ROUTE_MISTAKES, missions, same):
+        return hint
+    level = np.full((3, 1, 1), 3.6)
+    straight = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0)])
+    cost = float(answer(level, straight, 5.0, 10.0))
+    if math.isclose(cost, 0.001, rel_tol=1e-6):
+        return (
+            "Where the rate is the same everywhere, two straight moves are right. How long is a move over an edge, or "
+            "through a corner? And with which rates is each move flown?"
+        )
+    return (
+        "Take a map with 3.6 deaths per hour everywhere, and two moves of 5 m at 10 m/s: one second. That makes 0.001, "
+        f"and you get {cost:.4g}."
+    )
+
+
+def expected_deaths(rate: np.ndarray, voxels: np.ndarray, cell: float, speed: float) -> float:
+    return route_integral(rate, voxels, 0.5) * cell / (3600 * speed)
+
+
+def route_integral(rate: np.ndarray, voxels: np.ndarray, begin: float) -> float:
+    """∫ r ds [cells/h] with this share of each leg at the rate where it begins, the rest at that where it ends."""
+    lengths = np.linalg.norm(np.diff(voxels, axis=0), axis=1)
+    along = rate[tuple(voxels.T)]
+    return float(lengths @ (begin * along[:-1] + (1 - begin) * along[1:]))
+
+
+def random_mission(seed: int) -> tuple[np.ndarray, np.ndarray, float, float]:
+    """A map, a route of 20 moves that doesn't visit a voxel twice, a cell and a speed."""
+    rng = np.random.default_rng([53, seed])
+    moves = np.column_stack([np.ones(20, dtype=int), rng.integers(-1, 2, (20, 2))])
+    voxels = np.array([0, 25, 25]) + np.vstack([np.zeros(3, dtype=int), np.cumsum(moves, axis=0)])
+    return rng.lognormal(-14.0, 1.5, (25, 50, 50)), voxels, float(rng.uniform(2, 10)), float(rng.uniform(5, 20))
+
+
+def cells_passed(rate: np.ndarray, voxels: np.ndarray, cell: float, speed: float) -> float:
+    """Σ r, as the papers have it."""
+    return float(rate[tuple(voxels.T)].sum())
+
+
+def legs_as_edges(rate: np.ndarray, voxels: np.ndarray, cell: float, speed: float) -> float:
+    """All moves as long as a straight one."""
+    along = rate[tuple(voxels.T)]
+    return float((along[:-1] + along[1:]).sum() / 2) * cell / (3600 * speed)
+
+
+ROUTE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray, float, float], float], str]] = [
+    (
+        cells_passed,
+        "That is the papers' sum over the voxels: rates per hour, added up. For how long is the UAV in each voxel?",
+    ),
+    (
+        lambda rate, voxels, cell, speed: cells_passed(rate, voxels, cell, speed) * cell / (3600 * speed),
+        "You give every voxel the time of one straight move. Diagonals take longer, and the first and the last voxel "
+        "are flown through only by half.",
+    ),
+    (
+        legs_as_edges,
+        "You count all moves as equally long. How long is one over an edge, or through a corner?",
+    ),
+    (
+        lambda rate, voxels, cell, speed: route_integral(rate, voxels, 0.0) * cell / (3600 * speed),
+        "You take the rate of the voxel that a move leads to, for the whole move. In which voxels does it run?",
+    ),
+    (
+        lambda rate, voxels, cell, speed: route_integral(rate, voxels, 1.0) * cell / (3600 * speed),
+        "You take the rate of the voxel where a move begins, for the whole move. In which voxels does it run?",
+    ),
+    (
+        lambda rate, voxels, cell, speed: (
+            float(rate[tuple(voxels.T)].mean()) * expected_deaths(np.ones(rate.shape), voxels, cell, speed)
+        ),
+        "You multiply the mean rate by the whole time. Is the UAV in each voxel equally long?",
+    ),
+    (
+        lambda rate, voxels, cell, speed: 2 * expected_deaths(rate, voxels, cell, speed),
+        "Twice too much: each move is counted in full in both of its voxels.",
+    ),
+    (
+        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * 3600,
+        "You are off by the same factor for all routes: the rate is per hour, and metres by metres per second are "
+        "seconds.",
+    ),
+    (
+        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * 60,
+        "You are off by the same factor for all routes: an hour has more than 60 seconds.",
+    ),
+    (
+        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) / cell,
+        "Your lengths are in cells. How long is a move in metres?",
+    ),
+    (
+        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * speed,
+        "How fast the UAV flies makes no difference for you. Who is longer above a crowd?",
+    ),
+    (
+        lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * speed**2,
+        "The faster your UAV flies, the more die. How long is it above each place?",
+    ),
+    (
+        lambda rate, voxels, cell, speed: route_integral(rate, voxels, 0.5),
+        "That is ∫ r ds in cells, the scale of the papers, and not yet deaths: how many metres is it, and how long "
+        "does the UAV take for them?",
     ),
 ]

@@ -1,4 +1,4 @@
-"""Exercises of chapter 10, swarms and beetles: a step of a swarm, a step of a beetle, and whether a planner is better.
+"""Exercises of chapter 10, ant colony: the roulette in logarithms, the pheromone's update, and when τ_max binds.
 
 A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
 by how they are written.
@@ -6,352 +6,310 @@ by how they are written.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from uavlab.exercises.hints import NOTHING, alike, recognised
+from uavlab.exercises.hints import NOTHING, each_alike, recognised
 
-Step = tuple[np.ndarray, np.ndarray]
-Function = Callable[[np.ndarray], float]
-
-same = partial(alike, relative=1e-9)
-
-
-def exercise_1(fly: Callable[..., Any]) -> str:
-    """10.1: positions and velocities of a swarm after one step, the velocity limited, the box closed."""
-    questions = [swarm_question(seed) for seed in range(6)]
-    given = []
-    for question in questions:
-        copies = [np.copy(part) for part in question]
-        answer = fly(*copies)
-        if answer is None:
-            return NOTHING
-        if any(not np.array_equal(a, b) for a, b in zip(copies, question, strict=True)):
-            return "Your function changes an array that it was given. The caller may still need it: make new ones."
-        if not isinstance(answer, tuple | list) or len(answer) != 2:
-            return "The answer has two parts, positions and velocities."
-        given.append(tuple(np.asarray(part, dtype=float) for part in answer))
-        shapes = [part.shape for part in given[-1]]
-        if shapes != [question[0].shape] * 2:
-            return (
-                f"Positions and velocities have shape {question[0].shape}, as x; yours have {shapes[0]}, {shapes[1]}."
-            )
-    right = [flown(*question) for question in questions]
-    if same(given, right):
-        return ""
-    if hint := recognised(given, FLIGHT_MISTAKES, questions, same):
-        return hint
-    if same([x for x, _ in given], [x for x, _ in right]):
-        return "The positions are right. The velocities should be those with which the particles flew there."
-    if same([v for _, v in given], [v for _, v in right]):
-        return (
-            "The velocities are right. Where does a particle come with its new velocity, and what if that is outside?"
-        )
-    x, v = (float(part[0, 0]) for part in (given[0][0], given[0][1]))
-    right_x, right_v = (float(part[0, 0]) for part in right[0])
-    return (
-        f"A coordinate at {questions[0][0][0, 0]:.3f} with velocity {questions[0][1][0, 0]:.3f} comes to {x:.3f} with "
-        f"{v:.3f}, and should to {right_x:.3f} with {right_v:.3f}. Write the three terms of the velocity "
-        "one below the other: how large is each?"
-    )
+Odds = Callable[[np.ndarray, np.ndarray, float, float], npt.ArrayLike]
+Update = Callable[[np.ndarray, list[list[int]], list[float], float, float, float, float], npt.ArrayLike]
+Until = Callable[[float, int, float, float, float, float], int | None]
 
 
-def swarm_question(seed: int) -> tuple[Any, ...]:
-    """Seven particles in three dimensions, some near the border, some that would be too fast."""
-    rng = np.random.default_rng(1010 + seed)
-    x, best = rng.uniform(-4, 4, (2, 7, 3))
-    v = rng.normal(0, 1.5, (7, 3))
-    r1, r2 = rng.random((2, 7, 3))
-    return x, v, best, rng.uniform(-4, 4, 3), float(rng.uniform(0.4, 1.0)), r1, r2, 1.8, -4.0, 4.0
-
-
-def flown(
-    x: np.ndarray,
-    v: np.ndarray,
-    best: np.ndarray,
-    leader: np.ndarray,
-    inertia: float,
-    r1: np.ndarray,
-    r2: np.ndarray,
-    v_max: float,
-    low: float,
-    high: float,
-    *,
-    c1: float = 1.5,
-    c2: float = 2.0,
-    sign: float = 1.0,
-    limit: str = "both",
-    closed: bool = True,
-    with_old: bool = False,
-) -> Step:
-    """One step by rules that may be wrong."""
-    new = inertia * v + sign * (c1 * r1 * (best - x) + c2 * r2 * (leader - x))
-    limited = {
-        "both": np.clip(new, -v_max, v_max),
-        "above": np.minimum(new, v_max),
-        "none": new,
-        "length": new * np.minimum(1, v_max / np.maximum(np.linalg.norm(new, axis=1, keepdims=True), 1e-12)),
-    }[limit]
-    moved = x + (v if with_old else limited)
-    return (np.clip(moved, low, high) if closed else moved), limited
-
-
-def wrongly_flown(**how: Any) -> Callable[..., Step]:
-    return lambda *question: flown(*question, **how)
-
-
-def limited_late(*question: Any) -> Step:
-    """The velocity limited only after the particle has moved."""
-    moved, _ = flown(*question, limit="none")
-    return moved, flown(*question)[1]
-
-
-def one_number(*question: Any) -> Step:
-    """The same random number for both pulls."""
-    same = (*question[:6], question[5], *question[7:])
-    return flown(*same)
-
-
-OPEN = "Some particles leave the box. Where do they stop?"
-FLIGHT_MISTAKES: list[tuple[Callable[..., Step], str]] = [
-    (
-        wrongly_flown(with_old=True),
-        "Your particles move with the velocity they had. In Eq. 1 the velocity is new before the place is.",
-    ),
-    (wrongly_flown(limit="none"), "The velocities have no limit: what is v_max for?"),
-    (
-        wrongly_flown(limit="above"),
-        "Forwards the velocity is limited, backwards it isn't. Which is the smallest that is allowed?",
-    ),
-    (
-        wrongly_flown(limit="length"),
-        "You limit the length of the velocity. The exercise limits each of its parts.",
-    ),
-    (limited_late, "You limit the velocity after the particles have moved with it."),
-    (wrongly_flown(closed=False), OPEN),
-    (wrongly_flown(closed=False, limit="none"), f"The velocities have no limit: what is v_max for? And: {OPEN}"),
-    (
-        wrongly_flown(c1=2.0, c2=1.5),
-        "c1 and c2 are exchanged: which of them pulls to the particle's own best?",
-    ),
-    (
-        wrongly_flown(sign=-1.0),
-        "Your particles fly away from both bests. From where to where does best − x point?",
-    ),
-    (one_number, "Both pulls use r1. They are drawn independently of each other."),
-    (wrongly_flown(c2=0.0), "The pull to the leader is missing: what does one particle learn of the others?"),
-    (wrongly_flown(c1=0.0), "The pull to the particle's own best is missing."),
-]
-
-
-def exercise_2(walk: Callable[..., Any]) -> str:
-    """10.2: where a beetle stands after one step."""
-    rng = np.random.default_rng(1020)
-    questions = [
-        (f, rng.uniform(-2, 2, 3), rng.normal(size=3) * rng.uniform(0.2, 5), rng.uniform(0.5, 3), rng.uniform(0.1, 0.4))
-        for f in (bowl, slope, waves) * 20
+def exercise_1(odds: Odds) -> str:
+    """10.1: probabilities of an ant's next step, also where floats end."""
+    rng = np.random.default_rng(91)
+    usual = [
+        (rng.uniform(0.1, 15, n), 1 / rng.uniform(2, 30, n), rng.uniform(0.5, 4), rng.uniform(0.5, 4))
+        for n in (2, 3, 5, 8, 17)
     ]
-    given = []
-    for f, x, b, reach, step in questions:
-        stand, look = x.copy(), b.copy()
-        answer = walk(f, stand, look, reach, step)
-        if answer is None:
-            return NOTHING
-        if not (np.array_equal(stand, x) and np.array_equal(look, b)):
-            return "Your function changes x or b themselves. The caller may still need them: return a new array."
-        if np.shape(answer) != (3,):
-            return f"The answer is a point of three numbers here, as x; yours has the shape {np.shape(answer)}."
-        given.append(np.asarray(answer, dtype=float))
-    if same(given, [walked(*question) for question in questions]):
-        stay = walk(lambda point: 1.0, np.zeros(3), np.ones(3), 1.0, 1.0)
-        if np.allclose(stay, 0.0):
-            return ""
-        return "Where both sides smell the same your beetle walks. Which side is better there?"
-    if hint := recognised(given, WALK_MISTAKES, questions, same):
-        return hint
-    f, x, b, reach, step = questions[0]
-    gone, along = given[0] - x, b / np.linalg.norm(b)
-    return (
-        f"With f = |x|², x = {np.round(x, 2)}, b = {np.round(b, 2)}, reach = {reach:.2f} and step = {step:.2f} your "
-        f"beetle goes {np.linalg.norm(gone):.3f} far, {gone @ along:+.3f} of it along b. How far should it go, along "
-        "what, and to which side?"
-    )
-
-
-def bowl(point: np.ndarray) -> float:
-    return float(np.sum(np.square(point)))
-
-
-def slope(point: np.ndarray) -> float:
-    return float(np.dot(point, (1.0, -2.0, 0.5)))
-
-
-def waves(point: np.ndarray) -> float:
-    return float(np.sum(np.sin(3 * np.asarray(point)) + 0.1 * np.square(point)))
-
-
-def walked(
-    f: Function,
-    x: np.ndarray,
-    b: np.ndarray,
-    reach: float,
-    step: float,
-    *,
-    uphill: bool = False,
-    unit: bool = True,
-    half: float = 1.0,
-    far: bool = False,
-    one_side: bool = False,
-    by_size: bool = False,
-    greedy: bool = False,
-) -> np.ndarray:
-    """A step by rules that may be wrong."""
-    along = b / np.linalg.norm(b) if unit else b
-    left = f(x + half * reach * along)
-    right = f(x) if one_side else f(x - half * reach * along)
-    side = (left - right) if by_size else np.sign(left - right)
-    moved = x - (-1 if uphill else 1) * (reach if far else step) * along * side
-    return x if greedy and f(moved) >= f(x) else moved
-
-
-def wrongly_walked(**how: Any) -> Callable[..., np.ndarray]:
-    return lambda *question: walked(*question, **how)
-
-
-WALK_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
-    (
-        wrongly_walked(uphill=True),
-        "Your beetle walks to the side where f is larger. If f is larger on the left, which sign has the difference, "
-        "and which way is it then to the right?",
-    ),
-    (
-        wrongly_walked(unit=False),
-        "How far your beetle looks and walks depends on the length of b. Only its direction counts: what is left of a "
-        "vector when its length is taken out?",
-    ),
-    (
-        wrongly_walked(far=True),
-        "Your beetle walks as far as its antennae reach. It looks with one length and walks with the other.",
-    ),
-    (
-        wrongly_walked(half=0.5),
-        "Your tips are half of `reach` away from the body. It is the distance from the body to one tip (Eq. 18), not "
-        "from tip to tip.",
-    ),
-    (
-        wrongly_walked(one_side=True),
-        "You compare one tip with the place where the beetle stands. It has two antennae.",
-    ),
-    (
-        wrongly_walked(by_size=True),
-        "The larger the difference, the further your beetle walks. Only the sign of it counts.",
-    ),
-    (
-        wrongly_walked(greedy=True),
-        "Your beetle stays where walking would make it worse. That is the greedy one; this one walks all the same.",
-    ),
-]
-
-
-def exercise_3(share_of_wins: Callable[..., Any]) -> str:
-    """10.3: the share of runs that are won, and its interval by resampling maps."""
-    questions = [gaps_of(seed) for seed in range(10)]
-    answers = []
-    for seed, (ours, theirs) in enumerate(questions):
-        answer = share_of_wins(ours.copy(), theirs.copy(), np.random.default_rng(seed))
-        if answer is None:
-            return NOTHING
-        if np.size(answer) != 3:
-            return (
-                f"The answer has three numbers: the share, and both ends of its interval. Yours has {np.size(answer)}."
-            )
-        answers.append(np.ravel(np.asarray(answer, dtype=float)))
-    given = np.array(answers)
-    same_shares = partial(alike, relative=1e-5, absolute=1e-9)
-    right = [won(*question).mean() for question in questions]
-    if not same_shares(given[:, 0], right):
-        return recognised(given[:, 0], SHARE_MISTAKES, questions, same_shares) or (
-            f"For the first of our questions your share is {given[0, 0]:.4f}; it should be {right[0]:.4f}."
-        )
-    return interval_hint(given, [won(*question) for question in questions])
-
-
-def interval_hint(given: np.ndarray, wins: list[np.ndarray]) -> str:
-    """What is wrong with the interval where the share is right."""
-    if (given[:, 1] > given[:, 2]).any():
-        return "The lower end of your interval is above the upper one."
-    right = np.array([interval(runs, maps=True) for runs in wins])
-    ratio = np.mean((given[:, 2] - given[:, 1]) / (right[:, 1] - right[:, 0]))
-    if 0.94 < ratio < 1.06:
-        if np.allclose(given[:, 1:], right, atol=0.06):
-            return ""
-        return "Your interval is as wide as it should be, but lies elsewhere. Which quantiles are its two ends?"
-    of_runs = np.array([interval(runs, maps=False) for runs in wins])
-    narrow = np.mean((of_runs[:, 1] - of_runs[:, 0]) / (right[:, 1] - right[:, 0]))
-    if abs(ratio - narrow) < 0.04:
+    answers = [odds(tau.copy(), eta.copy(), alpha, beta) for tau, eta, alpha, beta in usual]
+    if any(answer is None for answer in answers):
+        return NOTHING
+    if any(np.shape(answer) != case[0].shape for answer, case in zip(answers, usual, strict=True)):
+        return f"For two neighbours the answer is two probabilities; yours has the shape {np.shape(answers[0])}."
+    if not each_alike(answers, [right_odds(*case) for case in usual]):
+        if hint := recognised(answers, ODDS_MISTAKES, usual, each_alike):
+            return hint
+        sums = [float(np.sum(answer)) for answer in answers]
+        if not np.allclose(sums, 1.0):
+            return f"The ant goes somewhere for certain: the probabilities should add up to 1, yours to {sums[0]:.4g}."
         return (
-            "The share is right, the interval much too narrow: so it would be if all runs were independent. Many seeds "
-            "on one map tell about one map. What has to be drawn, runs or maps?"
+            "They add up to 1, but the shares are wrong. By hand: two neighbours, τ = (1, 4), η = (1, 1), α = 0.5, "
+            "any β. How many times likelier is the second?"
         )
-    for level, ends in ((0.9, "5 % and 95 %"), (0.6827, "about 16 % and 84 %")):
-        other = np.array([interval(runs, maps=True, level=level) for runs in wins])
-        if abs(ratio - np.mean((other[:, 1] - other[:, 0]) / (right[:, 1] - right[:, 0]))) < 0.04:
-            return f"Your ends are the quantiles of {ends}. How much may lie below and above an interval of 95 %?"
-    if (given[:, 1] == given[:, 2]).all():
-        return "Both ends are the same. Is something drawn anew each time?"
-    return (
-        f"The share is right. The interval is {ratio:.2f} times as wide as it should be: how many maps are drawn each "
-        "time, with replacement or without, and do all their seeds come along?"
-    )
+    return beyond_floats(odds)
 
 
-def gaps_of(seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gaps of two planners (12 maps, 8 seeds): maps matter more than seeds; some ties, some that didn't arrive."""
-    rng = np.random.default_rng(1030 + seed)
-    theirs = rng.exponential(8.0, (12, 8)).round(2)
-    ours = (theirs - rng.normal(0.5, 5.0, (12, 1)) - rng.normal(0, 0.8, (12, 8))).round(2)
-    tie = rng.random((12, 8)) < 0.15
-    ours[tie] = theirs[tie]
-    ours[rng.random((12, 8)) < 0.05] = np.inf
-    theirs[rng.random((12, 8)) < 0.03] = np.inf
-    ours[0, 0] = theirs[0, 0] = np.inf
-    return ours, theirs
+def beyond_floats(odds: Odds) -> str:
+    """A hint for where powers leave the range of floats, or a scent is gone."""
+    far = 1 / np.array([30.0, 31.0, 29.0])
+    for name, case in {
+        "β = 80, 150 m from the goal, after 440 generations": (
+            np.full(3, 15 * 0.2**440), np.array([1 / 150, 1 / 155, 1 / 145]), 0.5, 80.0
+        ),
+        "β = 500, 30 m from the goal": (np.full(3, 15.0), far, 0.5, 500.0),
+        "η = 30 and β = 500": (np.full(3, 15.0), 1000 * far, 0.5, 500.0),
+    }.items():  # fmt: skip
+        with np.errstate(all="ignore"):
+            answer = np.asarray(odds(*case), dtype=float)
+        if not np.isfinite(answer).all():
+            return f"Right for usual numbers. For {name} you get {answer}: which power left the range of floats?"
+        if not np.allclose(answer, right_odds(*case), atol=1e-9):
+            return (
+                f"Right for usual numbers. For {name} you get {answer}, which should be {right_odds(*case).round(4)}. "
+                "Before taking exp, subtract something that makes the largest exponent 0."
+            )
+    with np.errstate(all="ignore"):
+        gone = np.asarray(odds(np.array([0.0, 3.0, 3.0]), np.ones(3), 1.0, 2.0), dtype=float)
+    if not np.allclose(gone, [0.0, 0.5, 0.5], atol=1e-9):
+        return f"Where the scent of one of three neighbours is 0, nobody goes there; you get {gone}."
+    return ""
 
 
-def won(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
-    return np.where(ours == theirs, 0.5, ours < theirs)
+def right_odds(tau: np.ndarray, eta: np.ndarray, alpha: float, beta: float) -> np.ndarray:
+    with np.errstate(divide="ignore"):
+        logs = alpha * np.log(tau) + beta * np.log(eta)
+    weight = np.exp(logs - logs.max())
+    return weight / weight.sum()
 
 
-SHARE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], Any], str]] = [
+def shares(weight: np.ndarray) -> np.ndarray:
+    return weight / weight.sum()
+
+
+ODDS_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
+    (lambda t, e, a, b: t**a * e**b, "Those are weights. A probability is a share of their sum."),
     (
-        lambda ours, theirs: (1 - won(ours, theirs)).mean(),
-        "That is how often the other one wins: the smaller gap is better.",
+        lambda t, e, a, b: np.exp(a * np.log(t) + b * np.log(e) - (a * np.log(t) + b * np.log(e)).max()),
+        "The largest of yours is always 1. What is left to do, so that they add up to 1?",
     ),
-    (lambda ours, theirs: (ours < theirs).mean(), "You count ties as lost. What counts a tie?"),
-    (lambda ours, theirs: (ours <= theirs).mean(), "You count ties as won. What counts a tie?"),
-    (lambda ours, theirs: (100 * won(ours, theirs)).mean(), "That is in per cent. A share lies between 0 and 1."),
+    (lambda t, e, a, b: shares(t * e), "Your answer doesn't depend on α and β."),
+    (lambda t, e, a, b: shares(t**b * e**a), "α belongs to the pheromone, β to the visibility: you have swapped them."),
+    (lambda t, e, a, b: shares(e**b), "The pheromone is missing: your ants smell nothing."),
+    (lambda t, e, a, b: shares(t**a), "The visibility is missing: your ants don't know where the goal is."),
     (
-        lambda ours, theirs: won(np.median(ours, axis=1), np.median(theirs, axis=1)).mean(),
-        "You compare the medians of each map. The question is about runs: each seed against the same seed.",
+        lambda t, e, a, b: shares(a * t + b * e),
+        "You add the two. A product says *and*: a neighbour without scent isn't chosen, however near it is.",
+    ),
+    (lambda t, e, a, b: shares(t**a + e**b), "You add the two powers. Eq. 2 multiplies them."),
+    (
+        lambda t, e, a, b: shares(np.abs(a * np.log(t) + b * np.log(e))),
+        "You share out the logarithms themselves. They only carry the weights; what takes a logarithm back?",
     ),
     (
-        lambda ours, theirs: (ours < theirs)[ours != theirs].mean(),
-        "You leave the ties out. Each run counts, a tie half.",
+        lambda t, e, a, b: shares(a * np.log(t) + b * np.log(e)),
+        "You share out the logarithms themselves. They only carry the weights; what takes a logarithm back?",
     ),
     (
-        lambda ours, theirs: won(ours, theirs)[np.isfinite(ours) & np.isfinite(theirs)].mean(),
-        "You leave out runs that didn't arrive. Who doesn't arrive has lost against one who does.",
+        lambda t, e, a, b: shares(t**a * e**-b),
+        "Your ants run away from the goal. η is already one over the distance.",
     ),
 ]
 
 
-def interval(values: np.ndarray, *, maps: bool, level: float = 0.95) -> tuple[float, float]:
-    """Ends of a bootstrap interval of the mean of values (M, S), by drawing maps or runs."""
-    rng = np.random.default_rng(0)
-    rows = values if maps else values.reshape(-1, 1)
-    shares = rows[rng.integers(len(rows), size=(4000, len(rows)))].mean(axis=(1, 2))
-    low, high = np.quantile(shares, [(1 - level) / 2, (1 + level) / 2])
-    return float(low), float(high)
+def exercise_2(update: Update) -> str:
+    """10.2: the pheromone after a generation, with evaporation, deposits and limits."""
+    case = (np.array([10.0, 10.0, 10.0, 10.0]), [[0, 1], [0, 2]], [20.0, 50.0], 0.8, 100.0, 0.0, 15.0)
+    cases = (case, *UPDATES)
+    answers = [given(update, one) for one in cases]
+    if any(answer is None for answer in answers):
+        return NOTHING
+    if np.shape(answers[0]) != case[0].shape:
+        return f"There are four nodes in the example, your answer has the shape {np.shape(answers[0])}."
+    kept = np.ones(3)
+    update(kept, [[0]], [10.0], 0.5, 1.0, 0.0, 5.0)
+    same = partial(each_alike, same=np.allclose)
+    if same(answers, [updated(*one) for one in cases]):
+        if not np.array_equal(kept, np.ones(3)):
+            return "The numbers are right, but you change the array that you were given. Work on a copy of it."
+        return ""
+    return recognised(answers, UPDATE_MISTAKES, cases, same) or (
+        f"Four nodes with τ = 10, two ants over nodes (0, 1) and (0, 2), of 20 and 50 m, ρ = 0.8, Q = 100, no limits "
+        f"that bind: you get {np.round(np.asarray(answers[0], dtype=float), 3)}. Node 3 was walked by nobody: what is "
+        "left of its scent? And what comes on top at node 0?"
+    )
+
+
+def given(update: Update, case: tuple) -> npt.ArrayLike:
+    """The answer to a case, on a copy of its pheromone."""
+    tau, ways, *rest = case
+    return update(tau.copy(), [list(way) for way in ways], *rest)
+
+
+def updated(
+    tau: np.ndarray,
+    ways: Sequence[Sequence[int]],
+    lengths: Sequence[float],
+    evaporation: float,
+    deposit: float,
+    least: float,
+    most: float,
+    *,
+    kept: float | None = None,
+    unit: Callable[[float, float], float] = lambda deposit, length: deposit / length,
+    each: bool = True,
+    fades_after: bool = False,
+    only_walked: bool = False,
+    limits: str = "after",
+) -> np.ndarray:
+    """Pheromone after a generation, by rules that may be wrong."""
+    kept = 1 - evaporation if kept is None else kept
+    laid = np.zeros_like(tau)
+    for way, length in zip(ways, lengths, strict=True):
+        laid[list(way)] = laid[list(way)] * each + unit(deposit, length)
+    walked = laid > 0
+    faded = np.where(walked | (not only_walked), kept * tau, tau)
+    after = kept * (tau + laid) if fades_after else faded + laid
+    low = least if limits in ("after", "least") else -np.inf
+    return np.clip(after, low, most if limits in ("after", "most") else np.inf)
+
+
+def drawn_updates() -> list[tuple]:
+    """Cases in which both limits bind somewhere, and some nodes are walked by several ants; and one with little Q."""
+    rng = np.random.default_rng(92)
+    cases = []
+    for evaporation, deposit in ((0.3, 100.0), (0.8, 100.0), (0.1, 40.0), (0.6, 150.0), (0.4, 0.05)):
+        ways = [sorted(rng.choice(12, 5, replace=False).tolist()) for _ in range(6)]
+        tau = np.concatenate([rng.uniform(0.05, 15.0, 12), [0.06, 0.07, 12.0, 3.0]])
+        cases.append((tau, ways, rng.uniform(20, 60, 6).tolist(), evaporation, deposit, 0.05, 15.0))
+    return cases
+
+
+UPDATES = drawn_updates()
+
+UPDATE_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
+    (
+        lambda *case: updated(*case, kept=case[3]),
+        "You keep the share ρ and let the rest evaporate. ρ is what goes.",
+    ),
+    (
+        lambda *case: updated(*case, kept=1.0),
+        "Nothing evaporates: then the first ants are never forgotten, and every scent ends at τ_max.",
+    ),
+    (
+        lambda *case: updated(*case, only_walked=True),
+        "You let only the nodes evaporate that were walked. The others must fade too, or nothing is ever forgotten.",
+    ),
+    (
+        lambda *case: updated(*case, fades_after=True),
+        "You let the fresh scent evaporate as well. In Eq. 4 it comes on top of what is left of the old.",
+    ),
+    (
+        lambda *case: updated(*case, unit=lambda deposit, length: deposit),
+        "Every ant lays Q, however long its way: nothing tells short ways from long ones.",
+    ),
+    (
+        lambda *case: updated(*case, unit=lambda deposit, length: deposit * length),
+        "Your long ways smell stronger than the short ones.",
+    ),
+    (
+        lambda *case: updated(*case, each=False),
+        "Where several ants walked, you count one of them. The sum in Eq. 4 goes over all ants that passed.",
+    ),
+    (
+        lambda *case: updated(*case, limits="none"),
+        "Evaporation and deposits are right. Where are the limits τ_min and τ_max?",
+    ),
+    (lambda *case: updated(*case, limits="most"), "The upper limit is right. What about the lower one?"),
+    (
+        lambda *case: updated(*case, limits="least"),
+        "The lower limit is right. Above τ_max there is scent left: is the upper limit kept, and after the deposits?",
+    ),
+]
+
+
+def exercise_3(until: Until) -> str:
+    """10.3: the generation in which the scent of the busiest node reaches τ_max, or None."""
+    first = REACHED[0]
+    answers = [until(*case) for case in REACHED]
+    if all(answer is None for answer in answers):
+        return (
+            f"You always return None. With ρ = {first[4]:g} and 10 ants on {first[3]:g} m each generation brings "
+            f"{first[1] * first[2] / first[3]:.2f}: where does that come to rest?"
+        )
+    if any(answer is not None and np.ndim(answer) != 0 for answer in answers):
+        return "The answer is one whole number of generations, or None."
+    same = partial(each_alike, same=same_generation)
+    if not same(answers, [capped(*case) for case in REACHED]):
+        if hint := recognised(answers, CAP_MISTAKES, REACHED, same):
+            return hint
+        number = next(n for n, (a, c) in enumerate(zip(answers, REACHED, strict=True)) if a != capped(*c))
+        start, ants, deposit, length, evaporation, most = REACHED[number]
+        return (
+            f"τ = {start:g} at first, {ants} ants on {length:g} m, Q = {deposit:g}, ρ = {evaporation:g}, τ_max = "
+            f"{most:g}: you say {answers[number]}. Write down the scent after generations 1, 2 and 3."
+        )
+    for case in NEVER_REACHED:
+        answer = until(*case)
+        if answer is not None:
+            rest = case[1] * case[2] / (case[4] * case[3])
+            return (
+                f"Right where τ_max is reached. But with ρ = {case[4]:g} the scent comes to rest at {rest:.2f} and "
+                f"never reaches {case[5]:g}; you say {answer}."
+            )
+    if until(15.0, 10, 100.0, 150.0, 0.8, 15.0) != 0:
+        return "Where the scent is at τ_max from the beginning, the answer is 0 generations."
+    return ""
+
+
+def same_generation(one: float | None, other: int | None) -> bool:
+    return one is other if one is None or other is None else float(one) == other
+
+
+def capped(
+    first: float,
+    ants: int,
+    deposit: float,
+    length: float,
+    evaporation: float,
+    most: float,
+    *,
+    gain: Callable[[int, float, float], float] = lambda ants, deposit, length: ants * deposit / length,
+    kept: float | None = None,
+    fades_after: bool = False,
+    offset: int = 0,
+) -> int | None:
+    """How many generations until τ_max, by rules that may be wrong; None within 10 000."""
+    kept = 1 - evaporation if kept is None else kept
+    tau, more = first, gain(ants, deposit, length)
+    for generation in range(10_000):
+        if tau >= most:
+            return generation + offset
+        tau = kept * (tau + more) if fades_after else kept * tau + more
+    return None
+
+
+REACHED = [
+    (1.0, 10, 100.0, 150.0, 0.1, 15.0),
+    (0.5, 10, 100.0, 200.0, 0.2, 15.0),
+    (0.05, 4, 100.0, 140.0, 0.05, 15.0),
+    (2.0, 10, 60.0, 150.0, 0.15, 15.0),
+    (0.05, 20, 100.0, 180.0, 0.4, 15.0),
+    (6.0, 10, 80.0, 150.0, 0.3, 15.0),
+    (0.05, 3, 400.0, 140.0, 0.1, 15.0),
+]
+NEVER_REACHED = [(9.0, 10, 100.0, 150.0, 0.8, 15.0), (5.0, 10, 100.0, 150.0, 0.5, 15.0)]
+"""First τ, ants, Q, length [m], ρ and τ_max; the second list has the printed ρ first."""
+
+CAP_MISTAKES: list[tuple[Callable[..., int | None], str]] = [
+    (
+        lambda *case: math.ceil((case[5] - case[0]) * case[3] / (case[1] * case[2])),
+        "You let nothing evaporate meanwhile. The more there is, the more of it goes.",
+    ),
+    (
+        lambda *case: capped(*case, gain=lambda ants, deposit, length: deposit / length),
+        "You let one ant pass. All of them pass this node, and each lays Q/L.",
+    ),
+    (lambda *case: capped(*case, kept=case[4]), "You keep the share ρ and let the rest evaporate. ρ is what goes."),
+    (
+        lambda *case: capped(*case, fades_after=True),
+        "You let the fresh scent evaporate as well. In Eq. 4 it comes on top of what is left of the old.",
+    ),
+    (lambda *case: capped(*case, offset=1), "One too many: the scent is already there before your last generation."),
+    (lambda *case: capped(*case, offset=-1), "One too few: after so many generations it is still below τ_max."),
+]

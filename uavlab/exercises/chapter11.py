@@ -1,4 +1,4 @@
-"""Exercises of chapter 11, B-splines: curvature, a curve through its waypoints, and slowing down only where it bends.
+"""Exercises of chapter 11, swarms and beetles: a step of a swarm, a step of a beetle, and whether a planner is better.
 
 A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
 by how they are written.
@@ -12,266 +12,346 @@ from typing import Any
 
 import numpy as np
 
-from uavlab.exercises.hints import NOTHING, alike, each_alike, recognised
-from uavlab.spline import cubic_bspline
+from uavlab.exercises.hints import NOTHING, alike, recognised
 
-same = partial(each_alike, same=partial(alike, relative=1e-7, absolute=1e-9))
+Step = tuple[np.ndarray, np.ndarray]
+Function = Callable[[np.ndarray], float]
+
+same = partial(alike, relative=1e-9)
 
 
-def answers_to(
-    function: Callable[..., Any], questions: list[tuple[Any, ...]], shapes: list[tuple[int, ...]], what: str
-) -> tuple[list[np.ndarray], str]:
-    """What a function answers to questions, or a hint why that isn't even of the right kind."""
-    given: list[np.ndarray] = []
-    for question, shape in zip(questions, shapes, strict=True):
-        copies = [np.copy(part) if np.ndim(part) else part for part in question]
-        answer = function(*copies)
+def exercise_1(fly: Callable[..., Any]) -> str:
+    """11.1: positions and velocities of a swarm after one step, the velocity limited, the box closed."""
+    questions = [swarm_question(seed) for seed in range(6)]
+    given = []
+    for question in questions:
+        copies = [np.copy(part) for part in question]
+        answer = fly(*copies)
         if answer is None:
-            return given, NOTHING
+            return NOTHING
         if any(not np.array_equal(a, b) for a, b in zip(copies, question, strict=True)):
-            return given, "Your function changes an array that it was given. The caller may still need it: make a copy."
-        values = np.asarray(answer, dtype=float)
-        if values.shape != shape:
-            return given, f"{what} has the shape {shape} here, yours has {values.shape}."
-        given.append(values)
-    return given, ""
-
-
-def exercise_1(curvature: Callable[..., Any]) -> str:
-    """11.1: the curvature of a curve in space, by any parameter."""
-    rng = np.random.default_rng(1110)
-    questions = [tuple(rng.normal(0, size, (2, 6, 3))) for size in (0.5, 1.0, 3.0)]
-    given, hint = answers_to(curvature, questions, [(6,)] * 3, "The curvature")
-    if hint:
-        return hint
-    if same(given, [bent(*question) for question in questions]):
+            return "Your function changes an array that it was given. The caller may still need it: make new ones."
+        if not isinstance(answer, tuple | list) or len(answer) != 2:
+            return "The answer has two parts, positions and velocities."
+        given.append(tuple(np.asarray(part, dtype=float) for part in answer))
+        shapes = [part.shape for part in given[-1]]
+        if shapes != [question[0].shape] * 2:
+            return (
+                f"Positions and velocities have shape {question[0].shape}, as x; yours have {shapes[0]}, {shapes[1]}."
+            )
+    right = [flown(*question) for question in questions]
+    if same(given, right):
         return ""
-    return recognised(given, CURVATURE_MISTAKES, questions, same) or (
-        "Try it on a circle of radius 5, r = 5·(cos t, sin t, 0): your answer must be 0.2 everywhere, also when t runs "
-        f"twice as fast. For first = {np.round(questions[0][0][0], 2)} and second = {np.round(questions[0][1][0], 2)} "
-        f"yours is {given[0][0]:.4f}."
-    )
-
-
-def size(vectors: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(vectors, axis=1)
-
-
-def bent(first: np.ndarray, second: np.ndarray, power: float = 3.0) -> np.ndarray:
-    return size(np.cross(first, second)) / size(first) ** power
-
-
-SQUARED = "You use |r′|², a sum of squares: that is already the second power. Which power of it is |r′|³?"
-CURVATURE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], str]] = [
-    (
-        lambda first, second: bent(first, second, 4 / 3),
-        "The exponent of the sum of squares is the wrong way up: it isn't 2/3. What does a circle of 5 m give?",
-    ),
-    (
-        lambda first, second: bent(first, second, 2 / 3),
-        "The exponent is the wrong way up: 2/3 of |r′|. What does a circle of 5 m give that is run through twice as "
-        "fast?",
-    ),
-    (lambda first, second: bent(first, second, 6.0), SQUARED),
-    (
-        lambda first, second: bent(first, second, 2.0),
-        "You divide by |r′|². Run through the same circle twice as fast: |r′| doubles and |r″| becomes four times as "
-        "large. By which power must one divide, for κ to stay the same?",
-    ),
-    (
-        lambda first, second: size(second),
-        "That is |r″|: the curvature only where the curve runs one metre per unit of the parameter. Here it doesn't.",
-    ),
-    (
-        lambda first, second: size(second) / size(first) ** 2,
-        "You count all of r″. The part of it along the curve makes it faster and doesn't bend it.",
-    ),
-    (
-        lambda first, second: size(np.cross(first, second)),
-        "That is the numerator alone.",
-    ),
-    (
-        lambda first, second: bent(first * (1, 1, 0), second * (1, 1, 0)),
-        "You leave out the height: that is the curvature of the ground plan.",
-    ),
-    (
-        lambda first, second: np.cross(first, second)[:, 2] / size(first[:, :2]) ** 3,
-        "That is the curvature of the ground plan, with a sign for left and right. This curve lies in space.",
-    ),
-    (
-        lambda first, second: np.abs((first * second).sum(axis=1)) / size(first) ** 3,
-        "You use the scalar product of r′ and r″: it is largest where the curve is straight and gets faster.",
-    ),
-    (lambda first, second: 1 / bent(first, second), "That is the radius. The curvature is one over it."),
-]
-
-
-def exercise_2(control_points: Callable[..., Any]) -> str:
-    """11.2: the control points of a B-spline with phantom ends that passes through waypoints."""
-    rng = np.random.default_rng(1120)
-    questions = [(rng.uniform(-20, 20, (count, axes)),) for count, axes in ((6, 3), (4, 3), (3, 2), (9, 2))]
-    given, hint = answers_to(control_points, questions, [question[0].shape for question in questions], "The answer")
-    if hint:
+    if hint := recognised(given, FLIGHT_MISTAKES, questions, same):
         return hint
-    waypoints = [question[0] for question in questions]
-    knots = [cubic_bspline(points, per_segment=1) for points in given]
-    if same(knots, waypoints):
-        return ""
-    if hint := recognised(given, CONTROL_MISTAKES, questions, same):
-        return hint
-    if all(np.allclose(k[1:-1], w[1:-1]) for k, w in zip(knots, waypoints, strict=True)):
+    if same([x for x, _ in given], [x for x, _ in right]):
+        return "The positions are right. The velocities should be those with which the particles flew there."
+    if same([v for _, v in given], [v for _, v in right]):
         return (
-            "In between your curve passes through the waypoints, but it doesn't begin or end where it should. "
-            "Which equation have the first and the last point, with phantom ends?"
+            "The velocities are right. Where does a particle come with its new velocity, and what if that is outside?"
         )
-    off = np.linalg.norm(knots[0] - waypoints[0], axis=1)
+    x, v = (float(part[0, 0]) for part in (given[0][0], given[0][1]))
+    right_x, right_v = (float(part[0, 0]) for part in right[0])
     return (
-        f"At its knots your curve passes the six waypoints of the first question at {off.round(3)} m. Write the "
-        "equations of three waypoints down, each with the points that it contains."
+        f"A coordinate at {questions[0][0][0, 0]:.3f} with velocity {questions[0][1][0, 0]:.3f} comes to {x:.3f} with "
+        f"{v:.3f}, and should to {right_x:.3f} with {right_v:.3f}. Write the three terms of the velocity "
+        "one below the other: how large is each?"
     )
 
 
-def solved(waypoints: np.ndarray, *, sixth: float = 6.0, first: float = 4.0, neighbours: bool = True) -> np.ndarray:
-    """Control points by equations that may be wrong: `first` of 4 leaves the ends without phantom points."""
-    count = len(waypoints)
-    weights = (4 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)) / sixth
-    weights[[0, -1], [0, -1]] = first / sixth
-    if not neighbours:
-        weights[0, 1] = weights[-1, -2] = 0.0
-    return np.linalg.solve(weights, waypoints)
+def swarm_question(seed: int) -> tuple[Any, ...]:
+    """Seven particles in three dimensions, some near the border, some that would be too fast."""
+    rng = np.random.default_rng(1010 + seed)
+    x, best = rng.uniform(-4, 4, (2, 7, 3))
+    v = rng.normal(0, 1.5, (7, 3))
+    r1, r2 = rng.random((2, 7, 3))
+    return x, v, best, rng.uniform(-4, 4, 3), float(rng.uniform(0.4, 1.0)), r1, r2, 1.8, -4.0, 4.0
 
 
-def extrapolated(waypoints: np.ndarray) -> np.ndarray:
-    return 2 * waypoints - cubic_bspline(waypoints, per_segment=1)
-
-
-CONTROL_MISTAKES: list[tuple[Callable[[np.ndarray], np.ndarray], str]] = [
-    (
-        lambda waypoints: waypoints,
-        "Those are the waypoints themselves: the curve passes them by, as in the notebook.",
-    ),
-    (
-        lambda waypoints: cubic_bspline(waypoints, per_segment=1),
-        "You work out where the curve with the waypoints as control points is: a smoothing, and the wrong way round. "
-        "The waypoints are known, the control points are what is asked for.",
-    ),
-    (
-        solved,
-        "Your first and last equation lack a point: a neighbour outside is taken for 0. Where is the curve with "
-        "phantom ends when it begins?",
-    ),
-    (
-        lambda waypoints: solved(waypoints, first=5.0),
-        "You take each end twice, as its own neighbour. With a phantom point 2P₀ − P₁ before the first, what does the "
-        "equation of the first say?",
-    ),
-    (
-        lambda waypoints: solved(waypoints, sixth=1.0, first=1.0, neighbours=False),
-        "Your points in between are too near to the origin: the three weights add up to 6. What are they divided by?",
-    ),
-    (
-        lambda waypoints: solved(waypoints, sixth=1.0),
-        "The weights 1, 4, 1 add up to 6. What are they divided by?",
-    ),
-    (
-        extrapolated,
-        "You push each point out by what the curve misses, once. That moves the neighbours' knots as well: all points "
-        "have to be found together.",
-    ),
-]
-
-
-def exercise_3(speeds: Callable[..., Any]) -> str:
-    """11.3: the fastest speeds along a curve, from rest to rest, with limits on speed and acceleration."""
-    questions = [bends(seed) for seed in range(5)]
-    given, hint = answers_to(speeds, questions, [question[0].shape for question in questions], "The answer")
-    if hint:
-        return hint
-    if same(given, [driven(*question) for question in questions]):
-        return ""
-    return recognised(given, SPEED_MISTAKES, questions, same) or wrong_somewhere(given, questions)
-
-
-def wrong_somewhere(given: list[np.ndarray], questions: list[tuple[Any, ...]]) -> str:
-    """A hint by what speeds violate, or that they are too slow."""
-    for values, (distance, allowed, acceleration) in zip(given, questions, strict=True):
-        if not np.isfinite(values).all() or (values < -1e-9).any():
-            return "Some of your speeds are negative or not numbers. Is a square root taken of something below 0?"
-        if np.abs(values[[0, -1]]).max() > 1e-6:
-            return "The UAV begins and ends at rest."
-        over = np.flatnonzero(values > allowed + 1e-6)
-        if len(over):
-            return (
-                f"At {distance[over[0]]:.1f} m your speed is {values[over[0]]:.2f} m/s, {allowed[over[0]]:.2f} allowed."
-            )
-        rate = np.diff(values**2) / (2 * np.diff(distance))
-        hard = np.flatnonzero(np.abs(rate) > acceleration * (1 + 1e-6))
-        if len(hard):
-            verb = "accelerates" if rate[hard[0]] > 0 else "brakes"
-            return (
-                f"After {distance[hard[0]]:.1f} m your UAV {verb} with {abs(rate[hard[0]]):.2f} m/s², "
-                f"{acceleration:.2f} are allowed."
-            )
-    values, (distance, *_) = given[0], questions[0]
-    slow = int(np.argmax(driven(*questions[0]) - values))
-    return (
-        f"That can be flown, but not as fast as possible: at {distance[slow]:.1f} m more than {values[slow]:.2f} m/s."
-    )
-
-
-def bends(seed: int) -> tuple[np.ndarray, np.ndarray, float]:
-    """A curve with three bends and a limit of 16 m/s, points at uneven distances."""
-    rng = np.random.default_rng(1130 + seed)
-    distance = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 1.0, 150))])
-    allowed = np.full(len(distance), 16.0)
-    for place, slowest in zip((20.0, 45.0, 70.0), rng.uniform(2.0, 6.0, 3), strict=True):
-        allowed = np.minimum(allowed, slowest * np.exp(np.square((distance - place) / 3.0)))
-    return distance, allowed, float(rng.uniform(2.0, 4.0))
-
-
-def driven(
-    distance: np.ndarray,
-    allowed: np.ndarray,
-    acceleration: float,
+def flown(
+    x: np.ndarray,
+    v: np.ndarray,
+    best: np.ndarray,
+    leader: np.ndarray,
+    inertia: float,
+    r1: np.ndarray,
+    r2: np.ndarray,
+    v_max: float,
+    low: float,
+    high: float,
     *,
-    rest: bool = True,
-    forward: bool = True,
-    backward: bool = True,
-    twice: float = 2.0,
-    linear: bool = False,
+    c1: float = 1.5,
+    c2: float = 2.0,
+    sign: float = 1.0,
+    limit: str = "both",
+    closed: bool = True,
+    with_old: bool = False,
+) -> Step:
+    """One step by rules that may be wrong."""
+    new = inertia * v + sign * (c1 * r1 * (best - x) + c2 * r2 * (leader - x))
+    limited = {
+        "both": np.clip(new, -v_max, v_max),
+        "above": np.minimum(new, v_max),
+        "none": new,
+        "length": new * np.minimum(1, v_max / np.maximum(np.linalg.norm(new, axis=1, keepdims=True), 1e-12)),
+    }[limit]
+    moved = x + (v if with_old else limited)
+    return (np.clip(moved, low, high) if closed else moved), limited
+
+
+def wrongly_flown(**how: Any) -> Callable[..., Step]:
+    return lambda *question: flown(*question, **how)
+
+
+def limited_late(*question: Any) -> Step:
+    """The velocity limited only after the particle has moved."""
+    moved, _ = flown(*question, limit="none")
+    return moved, flown(*question)[1]
+
+
+def one_number(*question: Any) -> Step:
+    """The same random number for both pulls."""
+    same = (*question[:6], question[5], *question[7:])
+    return flown(*same)
+
+
+OPEN = "Some particles leave the box. Where do they stop?"
+FLIGHT_MISTAKES: list[tuple[Callable[..., Step], str]] = [
+    (
+        wrongly_flown(with_old=True),
+        "Your particles move with the velocity they had. In Eq. 1 the velocity is new before the place is.",
+    ),
+    (wrongly_flown(limit="none"), "The velocities have no limit: what is v_max for?"),
+    (
+        wrongly_flown(limit="above"),
+        "Forwards the velocity is limited, backwards it isn't. Which is the smallest that is allowed?",
+    ),
+    (
+        wrongly_flown(limit="length"),
+        "You limit the length of the velocity. The exercise limits each of its parts.",
+    ),
+    (limited_late, "You limit the velocity after the particles have moved with it."),
+    (wrongly_flown(closed=False), OPEN),
+    (wrongly_flown(closed=False, limit="none"), f"The velocities have no limit: what is v_max for? And: {OPEN}"),
+    (
+        wrongly_flown(c1=2.0, c2=1.5),
+        "c1 and c2 are exchanged: which of them pulls to the particle's own best?",
+    ),
+    (
+        wrongly_flown(sign=-1.0),
+        "Your particles fly away from both bests. From where to where does best − x point?",
+    ),
+    (one_number, "Both pulls use r1. They are drawn independently of each other."),
+    (wrongly_flown(c2=0.0), "The pull to the leader is missing: what does one particle learn of the others?"),
+    (wrongly_flown(c1=0.0), "The pull to the particle's own best is missing."),
+]
+
+
+def exercise_2(walk: Callable[..., Any]) -> str:
+    """11.2: where a beetle stands after one step."""
+    rng = np.random.default_rng(1020)
+    questions = [
+        (f, rng.uniform(-2, 2, 3), rng.normal(size=3) * rng.uniform(0.2, 5), rng.uniform(0.5, 3), rng.uniform(0.1, 0.4))
+        for f in (bowl, slope, waves) * 20
+    ]
+    given = []
+    for f, x, b, reach, step in questions:
+        stand, look = x.copy(), b.copy()
+        answer = walk(f, stand, look, reach, step)
+        if answer is None:
+            return NOTHING
+        if not (np.array_equal(stand, x) and np.array_equal(look, b)):
+            return "Your function changes x or b themselves. The caller may still need them: return a new array."
+        if np.shape(answer) != (3,):
+            return f"The answer is a point of three numbers here, as x; yours has the shape {np.shape(answer)}."
+        given.append(np.asarray(answer, dtype=float))
+    if same(given, [walked(*question) for question in questions]):
+        stay = walk(lambda point: 1.0, np.zeros(3), np.ones(3), 1.0, 1.0)
+        if np.allclose(stay, 0.0):
+            return ""
+        return "Where both sides smell the same your beetle walks. Which side is better there?"
+    if hint := recognised(given, WALK_MISTAKES, questions, same):
+        return hint
+    f, x, b, reach, step = questions[0]
+    gone, along = given[0] - x, b / np.linalg.norm(b)
+    return (
+        f"With f = |x|², x = {np.round(x, 2)}, b = {np.round(b, 2)}, reach = {reach:.2f} and step = {step:.2f} your "
+        f"beetle goes {np.linalg.norm(gone):.3f} far, {gone @ along:+.3f} of it along b. How far should it go, along "
+        "what, and to which side?"
+    )
+
+
+def bowl(point: np.ndarray) -> float:
+    return float(np.sum(np.square(point)))
+
+
+def slope(point: np.ndarray) -> float:
+    return float(np.dot(point, (1.0, -2.0, 0.5)))
+
+
+def waves(point: np.ndarray) -> float:
+    return float(np.sum(np.sin(3 * np.asarray(point)) + 0.1 * np.square(point)))
+
+
+def walked(
+    f: Function,
+    x: np.ndarray,
+    b: np.ndarray,
+    reach: float,
+    step: float,
+    *,
+    uphill: bool = False,
+    unit: bool = True,
+    half: float = 1.0,
+    far: bool = False,
+    one_side: bool = False,
+    by_size: bool = False,
+    greedy: bool = False,
 ) -> np.ndarray:
-    """Speeds by rules that may be wrong."""
-    power = 1 if linear else 2
-    speed = allowed.astype(float) ** power
-    if rest:
-        speed[[0, -1]] = 0.0
-    gain = twice * acceleration * np.diff(distance)
-    for i in range(1, len(speed) if forward else 0):
-        speed[i] = min(speed[i], speed[i - 1] + gain[i - 1])
-    for i in range(len(speed) - 2 if backward else -1, -1, -1):
-        speed[i] = min(speed[i], speed[i + 1] + gain[i])
-    return np.asarray(speed ** (1 / power))
+    """A step by rules that may be wrong."""
+    along = b / np.linalg.norm(b) if unit else b
+    left = f(x + half * reach * along)
+    right = f(x) if one_side else f(x - half * reach * along)
+    side = (left - right) if by_size else np.sign(left - right)
+    moved = x - (-1 if uphill else 1) * (reach if far else step) * along * side
+    return x if greedy and f(moved) >= f(x) else moved
 
 
-SPEED_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
+def wrongly_walked(**how: Any) -> Callable[..., np.ndarray]:
+    return lambda *question: walked(*question, **how)
+
+
+WALK_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
     (
-        partial(driven, backward=False),
-        "Your UAV accelerates well and never brakes: before a bend its speed falls at once. Braking, seen backwards, "
-        "is what?",
-    ),
-    (partial(driven, forward=False), "Your UAV brakes in time, but after a bend it has its full speed at once."),
-    (
-        partial(driven, forward=False, backward=False),
-        "That is the speed allowed at each point: it jumps, where the UAV can't.",
-    ),
-    (partial(driven, rest=False), "The UAV begins and ends at rest."),
-    (partial(driven, twice=1.0), "Your UAV accelerates with half of what it may. Look at v₂² − v₁² once more."),
-    (
-        partial(driven, linear=True, twice=1.0),
-        "You add a·s to the speed. That is metres per second times metres per second: what grows by 2as?",
+        wrongly_walked(uphill=True),
+        "Your beetle walks to the side where f is larger. If f is larger on the left, which sign has the difference, "
+        "and which way is it then to the right?",
     ),
     (
-        partial(driven, linear=True),
-        "You add 2as to the speed itself. What is it that grows by 2as?",
+        wrongly_walked(unit=False),
+        "How far your beetle looks and walks depends on the length of b. Only its direction counts: what is left of a "
+        "vector when its length is taken out?",
+    ),
+    (
+        wrongly_walked(far=True),
+        "Your beetle walks as far as its antennae reach. It looks with one length and walks with the other.",
+    ),
+    (
+        wrongly_walked(half=0.5),
+        "Your tips are half of `reach` away from the body. It is the distance from the body to one tip (Eq. 18), not "
+        "from tip to tip.",
+    ),
+    (
+        wrongly_walked(one_side=True),
+        "You compare one tip with the place where the beetle stands. It has two antennae.",
+    ),
+    (
+        wrongly_walked(by_size=True),
+        "The larger the difference, the further your beetle walks. Only the sign of it counts.",
+    ),
+    (
+        wrongly_walked(greedy=True),
+        "Your beetle stays where walking would make it worse. That is the greedy one; this one walks all the same.",
     ),
 ]
+
+
+def exercise_3(share_of_wins: Callable[..., Any]) -> str:
+    """11.3: the share of runs that are won, and its interval by resampling maps."""
+    questions = [gaps_of(seed) for seed in range(10)]
+    answers = []
+    for seed, (ours, theirs) in enumerate(questions):
+        answer = share_of_wins(ours.copy(), theirs.copy(), np.random.default_rng(seed))
+        if answer is None:
+            return NOTHING
+        if np.size(answer) != 3:
+            return (
+                f"The answer has three numbers: the share, and both ends of its interval. Yours has {np.size(answer)}."
+            )
+        answers.append(np.ravel(np.asarray(answer, dtype=float)))
+    given = np.array(answers)
+    same_shares = partial(alike, relative=1e-5, absolute=1e-9)
+    right = [won(*question).mean() for question in questions]
+    if not same_shares(given[:, 0], right):
+        return recognised(given[:, 0], SHARE_MISTAKES, questions, same_shares) or (
+            f"For the first of our questions your share is {given[0, 0]:.4f}; it should be {right[0]:.4f}."
+        )
+    return interval_hint(given, [won(*question) for question in questions])
+
+
+def interval_hint(given: np.ndarray, wins: list[np.ndarray]) -> str:
+    """What is wrong with the interval where the share is right."""
+    if (given[:, 1] > given[:, 2]).any():
+        return "The lower end of your interval is above the upper one."
+    right = np.array([interval(runs, maps=True) for runs in wins])
+    ratio = np.mean((given[:, 2] - given[:, 1]) / (right[:, 1] - right[:, 0]))
+    if 0.94 < ratio < 1.06:
+        if np.allclose(given[:, 1:], right, atol=0.06):
+            return ""
+        return "Your interval is as wide as it should be, but lies elsewhere. Which quantiles are its two ends?"
+    of_runs = np.array([interval(runs, maps=False) for runs in wins])
+    narrow = np.mean((of_runs[:, 1] - of_runs[:, 0]) / (right[:, 1] - right[:, 0]))
+    if abs(ratio - narrow) < 0.04:
+        return (
+            "The share is right, the interval much too narrow: so it would be if all runs were independent. Many seeds "
+            "on one map tell about one map. What has to be drawn, runs or maps?"
+        )
+    for level, ends in ((0.9, "5 % and 95 %"), (0.6827, "about 16 % and 84 %")):
+        other = np.array([interval(runs, maps=True, level=level) for runs in wins])
+        if abs(ratio - np.mean((other[:, 1] - other[:, 0]) / (right[:, 1] - right[:, 0]))) < 0.04:
+            return f"Your ends are the quantiles of {ends}. How much may lie below and above an interval of 95 %?"
+    if (given[:, 1] == given[:, 2]).all():
+        return "Both ends are the same. Is something drawn anew each time?"
+    return (
+        f"The share is right. The interval is {ratio:.2f} times as wide as it should be: how many maps are drawn each "
+        "time, with replacement or without, and do all their seeds come along?"
+    )
+
+
+def gaps_of(seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gaps of two planners (12 maps, 8 seeds): maps matter more than seeds; some ties, some that didn't arrive."""
+    rng = np.random.default_rng(1030 + seed)
+    theirs = rng.exponential(8.0, (12, 8)).round(2)
+    ours = (theirs - rng.normal(0.5, 5.0, (12, 1)) - rng.normal(0, 0.8, (12, 8))).round(2)
+    tie = rng.random((12, 8)) < 0.15
+    ours[tie] = theirs[tie]
+    ours[rng.random((12, 8)) < 0.05] = np.inf
+    theirs[rng.random((12, 8)) < 0.03] = np.inf
+    ours[0, 0] = theirs[0, 0] = np.inf
+    return ours, theirs
+
+
+def won(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+    return np.where(ours == theirs, 0.5, ours < theirs)
+
+
+SHARE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], Any], str]] = [
+    (
+        lambda ours, theirs: (1 - won(ours, theirs)).mean(),
+        "That is how often the other one wins: the smaller gap is better.",
+    ),
+    (lambda ours, theirs: (ours < theirs).mean(), "You count ties as lost. What counts a tie?"),
+    (lambda ours, theirs: (ours <= theirs).mean(), "You count ties as won. What counts a tie?"),
+    (lambda ours, theirs: (100 * won(ours, theirs)).mean(), "That is in per cent. A share lies between 0 and 1."),
+    (
+        lambda ours, theirs: won(np.median(ours, axis=1), np.median(theirs, axis=1)).mean(),
+        "You compare the medians of each map. The question is about runs: each seed against the same seed.",
+    ),
+    (
+        lambda ours, theirs: (ours < theirs)[ours != theirs].mean(),
+        "You leave the ties out. Each run counts, a tie half.",
+    ),
+    (
+        lambda ours, theirs: won(ours, theirs)[np.isfinite(ours) & np.isfinite(theirs)].mean(),
+        "You leave out runs that didn't arrive. Who doesn't arrive has lost against one who does.",
+    ),
+]
+
+
+def interval(values: np.ndarray, *, maps: bool, level: float = 0.95) -> tuple[float, float]:
+    """Ends of a bootstrap interval of the mean of values (M, S), by drawing maps or runs."""
+    rng = np.random.default_rng(0)
+    rows = values if maps else values.reshape(-1, 1)
+    shares = rows[rng.integers(len(rows), size=(4000, len(rows)))].mean(axis=(1, 2))
+    low, high = np.quantile(shares, [(1 - level) / 2, (1 + level) / 2])
+    return float(low), float(high)

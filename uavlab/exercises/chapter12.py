@@ -1,4 +1,4 @@
-"""Exercises of chapter 12, flying in gusts: a point mass in the air, an exact interval, and a distance for a flight.
+"""Exercises of chapter 12, B-splines: curvature, a curve through its waypoints, and slowing down only where it bends.
 
 A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
 by how they are written.
@@ -6,284 +6,272 @@ by how they are written.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
-from scipy.stats import beta, norm
 
 from uavlab.exercises.hints import NOTHING, alike, each_alike, recognised
-from uavlab.vehicle import GRAVITY
-from uavlab.weather.forces import STANDARD_AIR
+from uavlab.spline import cubic_bspline
 
-Acceleration = Callable[[np.ndarray, np.ndarray, np.ndarray, float, float], np.ndarray]
-Interval = Callable[[int, int], tuple[float, float]]
-Distance = Callable[[float, float, float, float], float]
-
-DOWN = np.array([0.0, 0.0, GRAVITY])
-FLOWN = [
-    (np.array([1.0, -2.0, 17.0]), np.array([6.0, 3.0, 0.5]), np.array([-2.0, 4.0, 1.0]), 1.75, 0.06),
-    (np.array([0.0, 0.5, 20.0]), np.array([-3.0, 0.0, -0.5]), np.array([5.0, 1.0, 0.0]), 2.5, 0.09),
-    (np.array([3.0, 0.0, 12.0]), np.array([0.0, 9.0, 0.0]), np.array([0.0, 0.0, -1.0]), 1.5, 0.02),
-]
+same = partial(each_alike, same=partial(alike, relative=1e-7, absolute=1e-9))
 
 
-def exercise_1(acceleration: Acceleration) -> str:
-    """12.1: thrust, drag of the relative wind and weight."""
-    answers = [acceleration(f.copy(), w.copy(), v.copy(), m, a) for f, w, v, m, a in FLOWN]
-    if any(answer is None for answer in answers):
-        return NOTHING
-    for answer in answers:
-        if np.shape(answer) != (3,):
-            return f"The acceleration is a vector of three numbers; yours has shape {np.shape(answer)}."
-    if each_alike(answers, [right_acceleration(*case) for case in FLOWN]):
-        return ""
-    if hint := recognised(answers, ACCELERATIONS, FLOWN, each_alike):
+def answers_to(
+    function: Callable[..., Any], questions: list[tuple[Any, ...]], shapes: list[tuple[int, ...]], what: str
+) -> tuple[list[np.ndarray], str]:
+    """What a function answers to questions, or a hint why that isn't even of the right kind."""
+    given: list[np.ndarray] = []
+    for question, shape in zip(questions, shapes, strict=True):
+        copies = [np.copy(part) if np.ndim(part) else part for part in question]
+        answer = function(*copies)
+        if answer is None:
+            return given, NOTHING
+        if any(not np.array_equal(a, b) for a, b in zip(copies, question, strict=True)):
+            return given, "Your function changes an array that it was given. The caller may still need it: make a copy."
+        values = np.asarray(answer, dtype=float)
+        if values.shape != shape:
+            return given, f"{what} has the shape {shape} here, yours has {values.shape}."
+        given.append(values)
+    return given, ""
+
+
+def exercise_1(curvature: Callable[..., Any]) -> str:
+    """12.1: the curvature of a curve in space, by any parameter."""
+    rng = np.random.default_rng(1110)
+    questions = [tuple(rng.normal(0, size, (2, 6, 3))) for size in (0.5, 1.0, 3.0)]
+    given, hint = answers_to(curvature, questions, [(6,)] * 3, "The curvature")
+    if hint:
         return hint
-    still = FLOWN[0][2]
-    alone = np.asarray(acceleration(np.zeros(3), still, still.copy(), 1.0, 0.06))
-    if not np.allclose(alone, -DOWN):
-        return "Begin with what is simplest: no thrust, and air that moves along with the UAV. What is left of Eq. 2?"
-    return "Without thrust and drag it is right. Which way does the air stream past, and how long is that vector?"
+    if same(given, [bent(*question) for question in questions]):
+        return ""
+    return recognised(given, CURVATURE_MISTAKES, questions, same) or (
+        "Try it on a circle of radius 5, r = 5·(cos t, sin t, 0): your answer must be 0.2 everywhere, also when t runs "
+        f"twice as fast. For first = {np.round(questions[0][0][0], 2)} and second = {np.round(questions[0][1][0], 2)} "
+        f"yours is {given[0][0]:.4f}."
+    )
 
 
-def right_acceleration(
-    thrust: np.ndarray, wind: np.ndarray, velocity: np.ndarray, mass: float, drag_area: float
-) -> np.ndarray:
-    return (thrust + drag_of(wind - velocity, drag_area)) / mass - DOWN
+def size(vectors: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(vectors, axis=1)
 
 
-def drag_of(stream: np.ndarray, drag_area: float) -> np.ndarray:
-    return 0.5 * STANDARD_AIR * drag_area * float(np.linalg.norm(stream)) * stream
+def bent(first: np.ndarray, second: np.ndarray, power: float = 3.0) -> np.ndarray:
+    return size(np.cross(first, second)) / size(first) ** power
 
 
-ACCELERATIONS: list[tuple[Acceleration, str]] = [
+SQUARED = "You use |r′|², a sum of squares: that is already the second power. Which power of it is |r′|³?"
+CURVATURE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], str]] = [
     (
-        lambda f, w, v, m, a: (f - drag_of(w - v, a)) / m - DOWN,
-        "Your drag pulls against the stream of air. Hover in a wind: where does it push you?",
+        lambda first, second: bent(first, second, 4 / 3),
+        "The exponent of the sum of squares is the wrong way up: it isn't 2/3. What does a circle of 5 m give?",
     ),
     (
-        lambda f, w, v, m, a: (f + drag_of(w, a)) / m - DOWN,
-        "Your drag is that of a UAV that stands still. One that drifts with the wind feels none.",
+        lambda first, second: bent(first, second, 2 / 3),
+        "The exponent is the wrong way up: 2/3 of |r′|. What does a circle of 5 m give that is run through twice as "
+        "fast?",
+    ),
+    (lambda first, second: bent(first, second, 6.0), SQUARED),
+    (
+        lambda first, second: bent(first, second, 2.0),
+        "You divide by |r′|². Run through the same circle twice as fast: |r′| doubles and |r″| becomes four times as "
+        "large. By which power must one divide, for κ to stay the same?",
     ),
     (
-        lambda f, w, v, m, a: (f + drag_of(-v, a)) / m - DOWN,
-        "Your drag is that of still air: where is the wind?",
+        lambda first, second: size(second),
+        "That is |r″|: the curvature only where the curve runs one metre per unit of the parameter. Here it doesn't.",
     ),
     (
-        lambda f, w, v, m, a: (f + drag_of(w + v, a)) / m - DOWN,
-        "You add wind and velocity. A UAV that flies with the wind feels less of it, not more.",
+        lambda first, second: size(second) / size(first) ** 2,
+        "You count all of r″. The part of it along the curve makes it faster and doesn't bend it.",
     ),
     (
-        lambda f, w, v, m, a: (f + drag_of(w - v, 2 * a)) / m - DOWN,
-        "Your drag is twice too large: Eq. 2 has one more factor.",
+        lambda first, second: size(np.cross(first, second)),
+        "That is the numerator alone.",
     ),
     (
-        lambda f, w, v, m, a: (f + 0.5 * STANDARD_AIR * a * np.abs(w - v) * (w - v)) / m - DOWN,
-        "You square each component on its own. Then the drag of a wind from the south-west isn't that of one from the "
-        "south: what is the length in Eq. 2 taken of?",
+        lambda first, second: bent(first * (1, 1, 0), second * (1, 1, 0)),
+        "You leave out the height: that is the curvature of the ground plan.",
     ),
     (
-        lambda f, w, v, m, a: (f + 0.5 * STANDARD_AIR * a * (w - v) ** 2) / m - DOWN,
-        "A square has no sign: your drag pushes east and north, whatever the wind.",
+        lambda first, second: np.cross(first, second)[:, 2] / size(first[:, :2]) ** 3,
+        "That is the curvature of the ground plan, with a sign for left and right. This curve lies in space.",
     ),
     (
-        lambda f, w, v, m, a: (f + 0.5 * STANDARD_AIR * a * (w - v)) / m - DOWN,
-        "Your drag grows with the speed, not with its square. What are the units of your force?",
+        lambda first, second: np.abs((first * second).sum(axis=1)) / size(first) ** 3,
+        "You use the scalar product of r′ and r″: it is largest where the curve is straight and gets faster.",
+    ),
+    (lambda first, second: 1 / bent(first, second), "That is the radius. The curvature is one over it."),
+]
+
+
+def exercise_2(control_points: Callable[..., Any]) -> str:
+    """12.2: the control points of a B-spline with phantom ends that passes through waypoints."""
+    rng = np.random.default_rng(1120)
+    questions = [(rng.uniform(-20, 20, (count, axes)),) for count, axes in ((6, 3), (4, 3), (3, 2), (9, 2))]
+    given, hint = answers_to(control_points, questions, [question[0].shape for question in questions], "The answer")
+    if hint:
+        return hint
+    waypoints = [question[0] for question in questions]
+    knots = [cubic_bspline(points, per_segment=1) for points in given]
+    if same(knots, waypoints):
+        return ""
+    if hint := recognised(given, CONTROL_MISTAKES, questions, same):
+        return hint
+    if all(np.allclose(k[1:-1], w[1:-1]) for k, w in zip(knots, waypoints, strict=True)):
+        return (
+            "In between your curve passes through the waypoints, but it doesn't begin or end where it should. "
+            "Which equation have the first and the last point, with phantom ends?"
+        )
+    off = np.linalg.norm(knots[0] - waypoints[0], axis=1)
+    return (
+        f"At its knots your curve passes the six waypoints of the first question at {off.round(3)} m. Write the "
+        "equations of three waypoints down, each with the points that it contains."
+    )
+
+
+def solved(waypoints: np.ndarray, *, sixth: float = 6.0, first: float = 4.0, neighbours: bool = True) -> np.ndarray:
+    """Control points by equations that may be wrong: `first` of 4 leaves the ends without phantom points."""
+    count = len(waypoints)
+    weights = (4 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)) / sixth
+    weights[[0, -1], [0, -1]] = first / sixth
+    if not neighbours:
+        weights[0, 1] = weights[-1, -2] = 0.0
+    return np.linalg.solve(weights, waypoints)
+
+
+def extrapolated(waypoints: np.ndarray) -> np.ndarray:
+    return 2 * waypoints - cubic_bspline(waypoints, per_segment=1)
+
+
+CONTROL_MISTAKES: list[tuple[Callable[[np.ndarray], np.ndarray], str]] = [
+    (
+        lambda waypoints: waypoints,
+        "Those are the waypoints themselves: the curve passes them by, as in the notebook.",
     ),
     (
-        lambda f, w, v, m, a: (f + drag_of(w - v, a)) / m,
-        "Your UAV has no weight: it would rise for ever.",
+        lambda waypoints: cubic_bspline(waypoints, per_segment=1),
+        "You work out where the curve with the waypoints as control points is: a smoothing, and the wrong way round. "
+        "The waypoints are known, the control points are what is asked for.",
     ),
     (
-        lambda f, w, v, m, a: (f + drag_of(w - v, a)) / m + DOWN,
-        "Your weight pulls up.",
+        solved,
+        "Your first and last equation lack a point: a neighbour outside is taken for 0. Where is the curve with "
+        "phantom ends when it begins?",
     ),
     (
-        lambda f, w, v, m, a: (f + drag_of(w - v, a) - DOWN) / m,
-        "You divide g by the mass. Which of the three are forces?",
+        lambda waypoints: solved(waypoints, first=5.0),
+        "You take each end twice, as its own neighbour. With a phantom point 2P₀ − P₁ before the first, what does the "
+        "equation of the first say?",
     ),
     (
-        lambda f, w, v, m, a: f + drag_of(w - v, a) - m * DOWN,
-        "That is the force [N]. Which acceleration does it give?",
+        lambda waypoints: solved(waypoints, sixth=1.0, first=1.0, neighbours=False),
+        "Your points in between are too near to the origin: the three weights add up to 6. What are they divided by?",
     ),
     (
-        lambda f, w, v, m, a: f / m + drag_of(w - v, a) - DOWN,
-        "Drag is a force as thrust is: a heavy UAV feels less of it.",
+        lambda waypoints: solved(waypoints, sixth=1.0),
+        "The weights 1, 4, 1 add up to 6. What are they divided by?",
+    ),
+    (
+        extrapolated,
+        "You push each point out by what the curve misses, once. That moves the neighbours' knots as well: all points "
+        "have to be found together.",
     ),
 ]
 
-TRIALS = [(0, 100), (1, 1000), (3, 20), (10, 10), (50, 200), (0, 1), (19, 2000)]
 
-
-def exercise_2(interval: Interval) -> str:
-    """12.2: the exact interval of a crash probability."""
-    answers = [interval(*trial) for trial in TRIALS]
-    if any(answer is None for answer in answers):
-        return NOTHING
-    if any(np.shape(answer) != (2,) for answer in answers):
-        return "The answer is two numbers, (low, high)."
-    ends = np.array(answers, dtype=float)
-    wanted = np.array([right_interval(*trial) for trial in TRIALS])
-    same = partial(alike, absolute=1e-12)
-    if same(ends, wanted):
+def exercise_3(speeds: Callable[..., Any]) -> str:
+    """12.3: the fastest speeds along a curve, from rest to rest, with limits on speed and acceleration."""
+    questions = [bends(seed) for seed in range(5)]
+    given, hint = answers_to(speeds, questions, [question[0].shape for question in questions], "The answer")
+    if hint:
+        return hint
+    if same(given, [driven(*question) for question in questions]):
         return ""
-    if np.allclose(ends, 1000 * wanted):
-        return "That is per 1 000. Asked for is a probability."
-    if same(ends, wanted[:, ::-1]):
-        return "Your lower end is the upper one."
-    if np.isnan(ends).any():
-        crashed, flights = TRIALS[int(np.isnan(ends).any(axis=1).argmax())]
-        return (
-            f"For {crashed} crashes of {flights} one end is NaN: a beta distribution has no parameter of 0. Which end "
-            "needs no computing there?"
-        )
-    return recognised(ends, INTERVALS, TRIALS, same) or half_right(ends, wanted)
+    return recognised(given, SPEED_MISTAKES, questions, same) or wrong_somewhere(given, questions)
 
 
-def half_right(ends: np.ndarray, wanted: np.ndarray) -> str:
-    """A hint by what is right, one end or the trials in which some crashed and some didn't."""
-    inner = slice(1, 3)  # neither none nor all crashed
-    for column, name, other in ((0, "lower", "upper"), (1, "upper", "lower")):
-        if np.allclose(ends[inner, column], wanted[inner, column]) and not np.allclose(
-            ends[inner, 1 - column], wanted[inner, 1 - column]
-        ):
+def wrong_somewhere(given: list[np.ndarray], questions: list[tuple[Any, ...]]) -> str:
+    """A hint by what speeds violate, or that they are too slow."""
+    for values, (distance, allowed, acceleration) in zip(given, questions, strict=True):
+        if not np.isfinite(values).all() or (values < -1e-9).any():
+            return "Some of your speeds are negative or not numbers. Is a square root taken of something below 0?"
+        if np.abs(values[[0, -1]]).max() > 1e-6:
+            return "The UAV begins and ends at rest."
+        over = np.flatnonzero(values > allowed + 1e-6)
+        if len(over):
             return (
-                f"The {name} end is right where some crash and some don't. Which of a, b and the share change for the "
-                f"{other} one?"
+                f"At {distance[over[0]]:.1f} m your speed is {values[over[0]]:.2f} m/s, {allowed[over[0]]:.2f} allowed."
             )
-    if np.allclose(ends[inner], wanted[inner]):
-        return "It is right where some crash and some don't. What do you know when none crashes, and when all do?"
-    crashed, flights = TRIALS[2]
+        rate = np.diff(values**2) / (2 * np.diff(distance))
+        hard = np.flatnonzero(np.abs(rate) > acceleration * (1 + 1e-6))
+        if len(hard):
+            verb = "accelerates" if rate[hard[0]] > 0 else "brakes"
+            return (
+                f"After {distance[hard[0]]:.1f} m your UAV {verb} with {abs(rate[hard[0]]):.2f} m/s², "
+                f"{acceleration:.2f} are allowed."
+            )
+    values, (distance, *_) = given[0], questions[0]
+    slow = int(np.argmax(driven(*questions[0]) - values))
     return (
-        f"For {crashed} crashes of {flights} flights you get {ends[2, 0]:.3g} to {ends[2, 1]:.3g}. How often would "
-        f"{crashed} or fewer be seen if the upper end were the truth? (`scipy.stats.binom.cdf` says it.)"
+        f"That can be flown, but not as fast as possible: at {distance[slow]:.1f} m more than {values[slow]:.2f} m/s."
     )
 
 
-def right_interval(crashed: int, flights: int, share: float = 0.95) -> tuple[float, float]:
-    tail = (1 - share) / 2
-    low = float(beta.ppf(tail, crashed, flights - crashed + 1)) if crashed else 0.0
-    high = float(beta.ppf(1 - tail, crashed + 1, flights - crashed)) if crashed < flights else 1.0
-    return low, high
+def bends(seed: int) -> tuple[np.ndarray, np.ndarray, float]:
+    """A curve with three bends and a limit of 16 m/s, points at uneven distances."""
+    rng = np.random.default_rng(1130 + seed)
+    distance = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 1.0, 150))])
+    allowed = np.full(len(distance), 16.0)
+    for place, slowest in zip((20.0, 45.0, 70.0), rng.uniform(2.0, 6.0, 3), strict=True):
+        allowed = np.minimum(allowed, slowest * np.exp(np.square((distance - place) / 3.0)))
+    return distance, allowed, float(rng.uniform(2.0, 4.0))
 
 
-def normal_interval(crashed: int, flights: int, *, clipped: bool = False) -> tuple[float, float]:
-    rate = crashed / flights
-    half = float(norm.ppf(0.975)) * math.sqrt(rate * (1 - rate) / flights)
-    return (max(rate - half, 0.0), min(rate + half, 1.0)) if clipped else (rate - half, rate + half)
+def driven(
+    distance: np.ndarray,
+    allowed: np.ndarray,
+    acceleration: float,
+    *,
+    rest: bool = True,
+    forward: bool = True,
+    backward: bool = True,
+    twice: float = 2.0,
+    linear: bool = False,
+) -> np.ndarray:
+    """Speeds by rules that may be wrong."""
+    power = 1 if linear else 2
+    speed = allowed.astype(float) ** power
+    if rest:
+        speed[[0, -1]] = 0.0
+    gain = twice * acceleration * np.diff(distance)
+    for i in range(1, len(speed) if forward else 0):
+        speed[i] = min(speed[i], speed[i - 1] + gain[i - 1])
+    for i in range(len(speed) - 2 if backward else -1, -1, -1):
+        speed[i] = min(speed[i], speed[i + 1] + gain[i])
+    return np.asarray(speed ** (1 / power))
 
 
-def rounded_normal(crashed: int, flights: int) -> tuple[float, float]:
-    rate = crashed / flights
-    half = 1.96 * math.sqrt(rate * (1 - rate) / flights)
-    return rate - half, rate + half
-
-
-def equal_tailed(crashed: int, flights: int) -> tuple[float, float]:
-    both = beta(crashed + 1, flights - crashed + 1)
-    return float(both.ppf(0.025)), float(both.ppf(0.975))
-
-
-NORMAL = (
-    "That is the interval of a normal distribution. For 0 crashes of 100 it has no width, as if you were sure, and for "
-    "1 of 1 000 it begins below 0."
-)
-INTERVALS: list[tuple[Interval, str]] = [
-    (normal_interval, NORMAL),
-    (rounded_normal, NORMAL),
-    (lambda k, n: normal_interval(k, n, clipped=True), NORMAL),
+SPEED_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
     (
-        lambda k, n: right_interval(k, n, 0.9),
-        "Yours holds 90 %: 5 % are cut off at either end. How many should be?",
+        partial(driven, backward=False),
+        "Your UAV accelerates well and never brakes: before a bend its speed falls at once. Braking, seen backwards, "
+        "is what?",
+    ),
+    (partial(driven, forward=False), "Your UAV brakes in time, but after a bend it has its full speed at once."),
+    (
+        partial(driven, forward=False, backward=False),
+        "That is the speed allowed at each point: it jumps, where the UAV can't.",
+    ),
+    (partial(driven, rest=False), "The UAV begins and ends at rest."),
+    (partial(driven, twice=1.0), "Your UAV accelerates with half of what it may. Look at v₂² − v₁² once more."),
+    (
+        partial(driven, linear=True, twice=1.0),
+        "You add a·s to the speed. That is metres per second times metres per second: what grows by 2as?",
     ),
     (
-        equal_tailed,
-        "You have one distribution with one crash and one safe flight added: Bayes' interval for an even prior. "
-        "The exact one has other parameters at each end.",
-    ),
-]
-
-WALLS = [(1.0, 8.0, 0.001, 0.5), (1.5, 20.0, 0.01, 0.5), (0.6, 60.0, 0.002, 0.3), (2.0, 3.0, 0.005, 1.0)]
-EASY = (1.0, 0.5, 0.1, 0.4)
-
-
-def exercise_3(distance: Distance) -> str:
-    """12.3: how far to keep off so that at most some share of flights touches the wall."""
-    answers = [distance(*wall) for wall in WALLS]
-    if any(answer is None for answer in answers):
-        return NOTHING
-    same = partial(alike, relative=1e-5)
-    touching = [right_distance(sigma, seconds, -math.log1p(-p), r) for sigma, seconds, p, r in WALLS]
-    if same(answers, [right_distance(*wall) for wall in WALLS]) or same(answers, touching):
-        easy = distance(*EASY)
-        if np.isclose(easy, EASY[3]):
-            return ""
-        return (
-            f"Beside walls that matter it is right. For {EASY[1]:g} s and {EASY[2]:g} allowed touches you get "
-            f"{easy:.3g} m: {EASY[1] / (2 * math.pi):.2f} touches are to be expected with no margin at all, and the "
-            f"body has a radius of {EASY[3]:g} m."
-        )
-    if hint := recognised(answers, DISTANCES, WALLS, same):
-        return hint
-    sigma, seconds, allowed, radius = WALLS[0]
-    margin = float(answers[0]) - radius
-    expected = seconds / (2 * math.pi) * math.exp(-0.5 * (margin / sigma) ** 2)
-    return (
-        f"With σ = {sigma:g} m, {seconds:g} s and a radius of {radius:g} m you keep {float(answers[0]):.2f} m: that "
-        f"makes {expected:.2g} touches, {allowed:g} are allowed. Write down the touches in all the seconds, and "
-        "solve for u."
-    )
-
-
-def right_distance(sigma: float, seconds: float, allowed: float, radius: float) -> float:
-    return radius + margin_for(sigma, seconds / (2 * math.pi * allowed))
-
-
-def margin_for(sigma: float, ratio: float) -> float:
-    return sigma * math.sqrt(2 * math.log(ratio)) if ratio > 1 else 0.0
-
-
-DISTANCES: list[tuple[Distance, str]] = [
-    (
-        lambda s, t, p, r: r + 3 * s,
-        "That is 3σ and half the body for each flight, short or long. How many touches does it make in an hour?",
-    ),
-    (
-        lambda s, t, p, r: right_distance(s, t, p, 0.0),
-        "That is the room that the centre needs. What is the first thing that touches?",
-    ),
-    (
-        lambda s, t, p, r: right_distance(s, t, p, 2 * r),
-        "You add the whole body. `radius` is half of it already.",
-    ),
-    (
-        lambda s, t, p, r: right_distance(s, 1.0, p, r),
-        "Your distance is the same for a second and for an hour beside the wall.",
-    ),
-    (
-        lambda s, t, p, r: r + margin_for(s, t / p),
-        "You count a radian as a turn: offsets with ω_n = 1 rad/s don't cross 0 once a second.",
-    ),
-    (
-        lambda s, t, p, r: r + s * math.sqrt(math.log(t / (2 * math.pi * p))),
-        "Check the exponent: σ² stands there with a factor.",
-    ),
-    (
-        lambda s, t, p, r: r + s * math.sqrt(2 * math.log10(t / (2 * math.pi * p))),
-        "The inverse of exp is the natural logarithm, not that to the base 10.",
-    ),
-    (
-        lambda s, t, p, r: r + s * float(norm.ppf(1 - p)),
-        "That is the quantile of one moment on one side. A flight has many moments.",
-    ),
-    (
-        lambda s, t, p, r: r + s * float(norm.ppf(1 - p / 2)),
-        "That is the quantile of one moment, and the wall is on one side. A flight has many moments.",
-    ),
-    (
-        lambda s, t, p, r: r + s**2 * math.sqrt(2 * math.log(t / (2 * math.pi * p))),
-        "Your margin grows with σ². What are its units?",
+        partial(driven, linear=True),
+        "You add 2as to the speed itself. What is it that grows by 2as?",
     ),
 ]
