@@ -45,7 +45,7 @@ def test_another_way_to_the_answer_is_right(number, answer):
 
 @pytest.mark.parametrize("number", NAMES)
 def test_answer_without_return_is_told_so(number):
-    assert "needs a line with return" in exercises.check(number, lambda *_: None).hint
+    assert "needs a line with `return`" in exercises.check(number, lambda *_: None).hint
 
 
 def across(wind, course):
@@ -85,8 +85,8 @@ MISTAKES = [
     ("01.2", lambda w, v, area, rho: rho / 2 * area * np.linalg.norm(w) * w, "Right for a UAV that hovers"),
     ("01.2", lambda w, v, area, rho: rho * area * np.linalg.norm(w - v) * (w - v), "half of the density"),
     ("01.2", lambda w, v, area, rho: rho / 2 * area * np.linalg.norm(w + v) * (w + v), "add the velocity"),
-    ("01.2", lambda w, v, area, rho: rho / 2 * area * np.linalg.norm(w - v) ** 2, "a force has a direction"),
-    ("01.2", lambda w, v, area, rho: (w - v)[:2], "yours has the shape (2,)"),
+    ("01.2", lambda w, v, area, rho: rho / 2 * area * np.linalg.norm(w - v) ** 2, "it has a direction"),
+    ("01.2", lambda w, v, area, rho: (w - v)[:2], "returns an array of shape (2,)"),
     ("01.2", lambda w, v, area, rho: np.ones(3), "how often does that speed enter"),
     ("01.3", lambda speed, wind, course: course, "the course itself"),
     ("01.3", lambda speed, wind, course: course + turned(speed, wind, course), "turn away from the crosswind"),

@@ -90,7 +90,7 @@ def in_place(samples):
         (in_place, "Work on a copy"),
         (lambda x: filtered(x, rounds=2), "should be left, you keep"),
         (lambda x: x[:0], "you keep 0"),
-        (lambda x: 3.0, "you keep 1"),
+        (lambda x: 3.0, "returns one number, 3. The answer is the array"),
     ],
 )
 def test_mistakes_with_the_filter(answer, hint):

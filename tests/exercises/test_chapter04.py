@@ -39,7 +39,7 @@ def test_another_way_to_the_answer_is_right(number):
 
 @pytest.mark.parametrize("number", ANSWERS)
 def test_answer_without_return_is_told_so(number):
-    assert "needs a line with return" in exercises.check(number, lambda *_: None).hint
+    assert "needs a line with `return`" in exercises.check(number, lambda *_: None).hint
 
 
 def offset(point, voxel, cell):
@@ -53,7 +53,7 @@ MISTAKES = [
     ("04.1", lambda code, shape: (code // 30, code // 6, code % 6), "j grows too large"),
     ("04.1", lambda code, shape: (code / 30, code // 6 % 5, code % 6), "not whole numbers"),
     ("04.1", lambda code, shape: (code // 20, code // 4 % 5, code % 4), "Put it into Eq. 4"),
-    ("04.1", lambda code, shape: code, "must be three numbers"),
+    ("04.1", lambda code, shape: code, "returns one number, 0. The answer is three whole numbers"),
     ("04.2", lambda *box: np.linalg.norm(offset(*box)), "distance to the centre"),
     ("04.2", lambda *box: np.linalg.norm(offset(*box)) - box[2] / 2, "the shape of a ball"),
     ("04.2", lambda *box: max(np.linalg.norm(offset(*box)) - box[2] / 2, 0.0), "the shape of a ball"),
@@ -61,7 +61,7 @@ MISTAKES = [
     ("04.2", lambda point, voxel, cell: box_clearance(point, voxel, 1.0), "Right for cells of 1 m only"),
     ("04.2", lambda point, voxel, cell: cell * box_clearance(point, voxel, 1.0), "bring both to metres"),
     ("04.2", lambda *box: np.maximum(offset(*box) - box[2] / 2, 0).max(), "the largest of the three"),
-    ("04.2", lambda *box: np.maximum(offset(*box) - box[2] / 2, 0), "must be one number"),
+    ("04.2", lambda *box: np.maximum(offset(*box) - box[2] / 2, 0), "The answer is one number: the distance"),
     ("04.2", lambda *box: 1.0, "Where does the voxel begin and end"),
     ("04.3", lambda gap, cell: gap / 2, "without a grid"),
     ("04.3", lambda gap, cell: (math.ceil(math.ceil(gap / cell) / 2) - 0.5) * cell, "the luckiest grid"),

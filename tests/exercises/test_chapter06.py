@@ -45,10 +45,10 @@ def nothing_beyond(*question):
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (as_a_number, "A size can't steer"),
-        (number_beyond, "no force is a vector, too"),
-        (nothing_beyond, "a vector of zeros"),
-        (lambda *q: push(*q)[:2], r"has the shape (2,)"),
+        (as_a_number, "returns one number, "),
+        (number_beyond, "also where it is zero"),
+        (nothing_beyond, "needs a line with `return`. The answer is the force"),
+        (lambda *q: push(*q)[:2], "an array of shape (2,)"),
         (lambda *q: -push(*q), "your voxel attracts. From where to where"),
         (lambda *q: push(*q, times=lambda d: d), "what is a direction's length"),
         (lambda *q: push(*q, beyond=True), "Beyond it your voxel attracts"),
@@ -59,7 +59,7 @@ def nothing_beyond(*question):
         (lambda *q: push(*q, middle=0.0, beyond=True), "lowest corner"),
         (lambda *q: push(*q, times=lambda d: d**2 * (1 / d - 1 / q[3]) / 2), "size of the potential"),
         (lambda *q: 2 * push(*q), "Go through it by hand"),
-        (lambda *q: "east", "You return a number"),
+        (lambda *q: "east", "returns text, 'east'"),
         (lambda *q: q[9], "raises IndexError"),
     ],
 )

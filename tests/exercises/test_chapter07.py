@@ -73,7 +73,7 @@ def test_another_score_is_right():
         (({name: i for i, name in enumerate(LOADS)}, RIGHT[1], (5, 9, 15, 21)), "of 16 are right"),
         (({"dead": 0, "light": 2, "moderate": 8}, RIGHT[1], (5, 9, 15, 21)), "load 'heavy'"),
         ((RIGHT[0], {"none": 0, "mild": 6, "heavy": 14}, (5, 9, 15, 21)), "disturbance 'moderate'"),
-        (RIGHT, "three parts"),
+        (RIGHT, "has 3 parts"),
         (None, "returns nothing"),
     ],
 )
@@ -128,10 +128,10 @@ def test_mistakes_with_the_boundary(mistake, hint):
     ("answer", "hint"),
     [
         (lambda observed, *rest: None, "returns nothing"),
-        (lambda observed, *rest: [2.0], "you return 1"),
+        (lambda observed, *rest: [2.0], "returns a list of 1. The answer is a list with a boundary for each"),
         (lambda observed, *rest: [2.0] * len(observed), "should rise"),
         (lambda observed, *rest: [9.0] * len(observed), "should not be 9 m"),
-        (lambda observed, *rest: math.nan, "raises TypeError"),
+        (lambda observed, *rest: math.nan, "returns one number, nan"),
     ],
 )
 def test_other_answers_for_the_boundary(answer, hint):

@@ -42,7 +42,7 @@ def test_another_way_to_the_answer_is_right(number):
 
 @pytest.mark.parametrize("number", ANSWERS)
 def test_answer_without_return_is_told_so(number):
-    assert "needs a line with return" in exercises.check(number, lambda *_: None).hint
+    assert "needs a line with `return`" in exercises.check(number, lambda *_: None).hint
 
 
 def test_the_other_gravity_is_right_too():
@@ -116,7 +116,7 @@ MISTAKES = [
     ("08.1", lambda *f: fall(*f[:3], 1.0), "where is the density"),
     ("08.1", lambda *f: math.nan, "no finite number"),
     ("08.1", lambda *f: 12.0, "you get 12.00 m/s"),
-    ("08.1", lambda *f: np.ones(3), "must be one number"),
+    ("08.1", lambda *f: np.ones(3), "returns an array of shape (3,). The answer is one number: the speed"),
     ("08.2", chance_under_one_root, "the root covers the power"),
     ("08.2", lambda e, s: 1 / (1 + math.sqrt(1e6 / 34) * (e / 34) ** (1 / (4 * s))), "which way up"),
     ("08.2", lambda e, s: chance(e, s, (1e6 / 34) ** 2), "a root over α/β"),
@@ -126,7 +126,7 @@ MISTAKES = [
     ("08.2", lambda e, s: 0.5, "you say"),
     ("08.2", chance, "divides by zero"),
     ("08.2", lambda e, s: chance(e, max(s, 1e-6)), "the power grows without bound"),
-    ("08.2", in_the_open(lambda energy: None), "In the open your function returns nothing"),
+    ("08.2", in_the_open(lambda energy: None), ", 0.0) your function returns nothing"),
     ("08.2", in_the_open(lambda energy: 1.0), "let every blow kill"),
     ("08.2", in_the_open(lambda energy: float(energy < 34)), "wrong way round"),
     ("08.2", in_the_open(lambda energy: 0.0), "0 for 35 J"),
@@ -145,7 +145,7 @@ MISTAKES = [
     ("08.3", lambda *m: cost(*m) * m[3] ** 2, "the more die"),
     ("08.3", lambda *m: cost(*m) / m[2] * 3600 * m[3], "not yet deaths"),
     ("08.3", lambda *m: 7.0, "and you get 7"),
-    ("08.3", lambda rate, *_: rate[0, 0], "must be one number"),
+    ("08.3", lambda rate, *_: rate[0, 0], "The answer is one number: the expected deaths"),
 ]
 
 

@@ -40,7 +40,7 @@ def shifted_by_mean(*case):
         (shifted_by_mean, "nobody goes there"),
         (lambda t, e, a, b: shared(np.maximum(t, 0.05) ** a * e ** (b / 2)), "How many times likelier"),
         (lambda t, e, a, b: 2 * shared(t**a * e**b), "add up to 1, yours to 2"),
-        (lambda *case: 0.5, "two probabilities"),
+        (lambda *case: 0.5, "a probability for each neighbour"),
         (lambda *case: None, "returns nothing"),
     ],
 )
@@ -101,9 +101,9 @@ def walked_only(tau, ways, lengths, rho, deposit, least, most):
         (lambda t, w, n, r, q, lo, hi: np.minimum((1 - r) * t + laid(t, w, n, q), hi), "What about the lower"),
         (lambda t, w, n, r, q, lo, hi: np.maximum((1 - r) * t + laid(t, w, n, q), lo), "after the deposits"),
         (lambda t, w, n, r, q, lo, hi: np.clip((1 - r) * t, lo, hi) + laid(t, w, n, q), "after the deposits"),
-        (in_place, "change the array"),
+        (in_place, "changes an array that it is given"),
         (lambda t, *rest: t, "Node 3 was walked by nobody"),
-        (lambda t, *rest: t[:2], "four nodes in the example"),
+        (lambda t, *rest: t[:2], "The answer is the scent of each node"),
         (lambda *case: None, "returns nothing"),
     ],
 )

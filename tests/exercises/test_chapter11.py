@@ -75,7 +75,7 @@ def in_place(x, v, *rest):
     [
         (in_place, "changes an array"),
         (lambda *question: fly(*question)[0], "two parts"),
-        (lambda *question: [part[0] for part in fly(*question)], "as x; yours have (3,)"),
+        (lambda *question: [part[0] for part in fly(*question)], "each of the shape of x"),
         (lambda *question: (fly(*question)[0], 0 * question[0]), "The positions are right"),
         (lambda *question: (0 * question[0], fly(*question)[1]), "The velocities are right"),
         (lambda *question: (question[0], question[1]), "three terms of the velocity"),
@@ -130,8 +130,8 @@ def moved_in_place(f, x, b, reach, step):
 @pytest.mark.parametrize(
     ("answer", "hint"),
     [
-        (moved_in_place, "changes x or b"),
-        (lambda f, x, b, reach, step: 1.0, "a point of three numbers"),
+        (moved_in_place, "changes an array"),
+        (lambda f, x, b, reach, step: 1.0, "with as many coordinates as x"),
         (lambda f, x, b, reach, step: x + b, "How far should it go"),
     ],
 )

@@ -53,7 +53,7 @@ def level(vectors):
         (lambda r1, r2: np.cross(r1, r2)[:, 2] / np.hypot(r1[:, 0], r1[:, 1]) ** 3, "a sign for left and right"),
         (lambda r1, r2: np.abs((r1 * r2).sum(axis=1)) / np.linalg.norm(r1, axis=1) ** 3, "scalar product"),
         (lambda r1, r2: 1 / by_gram(r1, r2), "That is the radius"),
-        (lambda r1, r2: np.linalg.norm(np.cross(r1, r2)) / np.linalg.norm(r1) ** 3, "shape (6,) here"),
+        (lambda r1, r2: np.linalg.norm(np.cross(r1, r2)) / np.linalg.norm(r1) ** 3, "a curvature for each point"),
         (lambda r1, r2: 2 * by_gram(r1, r2), "Try it on a circle"),
     ],
 )
@@ -107,7 +107,7 @@ def doubled_in_place(waypoints):
         (lambda waypoints: equations(waypoints, sixth=1.0, ends="none"), "add up to 6"),
         (lambda waypoints: equations(waypoints, ends="twice"), "doesn't begin or end"),
         (lambda waypoints: equations(waypoints) + 1.0, "passes the six waypoints"),
-        (lambda waypoints: equations(waypoints)[1:-1], "The answer has the shape (6, 3)"),
+        (lambda waypoints: equations(waypoints)[1:-1], "a control point for each waypoint"),
         (doubled_in_place, "changes an array"),
     ],
 )
@@ -174,7 +174,7 @@ def test_mistakes_with_the_speeds(broken, hint):
     [
         (lambda *question: 0.9 * drive(*question), "not as fast as possible"),
         (lambda *question: -drive(*question), "negative or not numbers"),
-        (lambda *question: drive(*question)[1:], "The answer has the shape"),
+        (lambda *question: drive(*question)[1:], "a speed for each point"),
         (lambda distance, allowed, a: drive(distance, 1.2 * allowed, a), "m/s, "),
     ],
 )

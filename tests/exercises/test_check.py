@@ -1,11 +1,15 @@
 """The checker, and what holds for every exercise; each chapter's typical mistakes have a test of their own."""
 
+import threading
+import time
 from collections import Counter
 
+import numpy as np
 import pytest
 from solved import EXERCISES, SOURCES, solutions_of
 
 from uavlab import exercises
+from uavlab.exercises import watching
 
 CHAPTERS = [source.stem[:2] for source in SOURCES]
 
@@ -41,12 +45,130 @@ def test_unknown_exercise():
             exercises.check(number, 1)
 
 
-def test_answer_that_fails_is_told_so():
+def test_answer_that_fails_is_told_so_with_its_line_and_the_input():
     def answer(*_):
         return 1 / 0
 
-    assert "Your answer raises ZeroDivisionError" in repr(exercises.check("05.1", answer))
+    hint = exercises.check("05.1", answer).hint
+    assert hint == (
+        "Your function raises ZeroDivisionError: division by zero, in the line `return 1 / 0` for (5, 3, 1)."
+    )
 
 
 def test_what_a_function_returns_is_not_the_function():
     assert "without brackets" in repr(exercises.check("05.1", 3.0))
+
+
+def test_not_callable_in_a_function_is_not_the_function():
+    """A missing * in 1000 (1 + e) calls the number."""
+    two = 2
+    hint = exercises.check("05.1", lambda dx, dy, dz: two(dx)).hint
+    assert "raises TypeError: 'int' object is not callable" in hint
+    assert "without brackets" not in hint
+
+
+@pytest.mark.parametrize("number", EXERCISES)
+def test_a_loop_without_end_is_stopped(number, monkeypatch):
+    monkeypatch.setattr(watching, "SECONDS", 0.2)
+
+    def endless(*_):
+        rounds = 0
+        while True:
+            rounds += 1
+
+    hint = exercises.check(number, endless).hint
+    assert "still runs after 0.2 seconds, and was stopped" in hint
+    assert "`while True:`" in hint or "`rounds += 1`" in hint
+    assert threading.active_count() < 10
+
+
+@pytest.mark.parametrize("number", EXERCISES)
+def test_every_exercise_names_an_exception_of_the_answer(number):
+    def answer(*_):
+        raise LookupError("no such street")
+
+    hint = exercises.check(number, answer).hint
+    assert 'raises LookupError: no such street, in the line `raise LookupError("no such street")` for (' in hint
+
+
+@pytest.mark.parametrize("number", EXERCISES)
+@pytest.mark.parametrize(
+    ("returned", "words"),
+    [
+        (None, "returns nothing"),
+        ("twelve", "returns text, 'twelve'"),
+        ({"a": 1}, "dict"),
+        (print, "function"),
+        ([[1.0], [1.0, 2.0]], "list"),
+    ],
+)
+def test_every_exercise_says_what_is_of_the_wrong_type(number, returned, words):
+    hint = exercises.check(number, lambda *_: returned).hint
+    if returned is None and number in ("01.3", "06.3", "10.3"):  # None is an answer there, but not always
+        assert "None" in hint or "nothing" in hint
+    elif number == "14.6":
+        assert "Mission" in hint or "returns nothing" in hint
+    elif number == "07.2" and isinstance(returned, list):
+        assert "3 parts" in hint
+    else:
+        assert words in hint
+        assert "The answer" in hint
+
+
+def test_an_answer_that_holds_up_exceptions_is_stopped_too(monkeypatch):
+    monkeypatch.setattr(watching, "SECONDS", 0.2)
+
+    def stubborn(*_):
+        while True:
+            try:
+                sum(range(1000))
+            except Exception:
+                continue
+
+    assert "was stopped" in exercises.check("05.1", stubborn).hint
+
+
+def test_compilation_is_not_counted(monkeypatch):
+    numba = pytest.importorskip("numba")
+    monkeypatch.setattr(watching, "SECONDS", 0.15)
+
+    def compiled_first(dx, dy, dz):
+        fresh = numba.njit(lambda a: [x * a for x in range(3)])
+        return len(fresh(dx))
+
+    began = time.monotonic()
+    hint = exercises.check("05.1", compiled_first).hint
+    assert "was stopped" not in hint
+    assert time.monotonic() - began > 0.15  # or this says nothing
+
+
+def test_arguments_are_the_answer_s_own():
+    def drag(wind, velocity, area, density):
+        wind -= velocity
+        return 0.5 * density * area * np.linalg.norm(wind) * wind
+
+    assert exercises.check("01.2", drag)
+
+
+def test_what_the_check_does_wrong_is_not_blamed_on_the_answer(monkeypatch):
+    def broken(answer):
+        return 1 / answer(0, 0, 0)
+
+    monkeypatch.setattr("uavlab.exercises.chapter05.exercise_1", broken)
+    hint = exercises.check("05.1", lambda *_: 0).hint
+    assert hint.startswith("The check itself can't go on, with a ZeroDivisionError")
+    assert "its fault, not yours" in hint
+    assert "(0, 0, 0)" in hint
+
+
+def test_endless_recursion_is_named():
+    def deeper(*steps):
+        return deeper(*steps)
+
+    assert "calls itself without end" in exercises.check("05.1", deeper).hint
+
+
+def test_long_inputs_are_shortened():
+    hint = exercises.check("05.2", lambda occupied, *_: occupied.nothing).hint
+    assert "raises AttributeError" in hint
+    assert len(hint) < 400

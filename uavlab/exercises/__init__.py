@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from uavlab import checks
+from uavlab.exercises.watching import Watched, hint_from, shown
 
 
 @dataclass(frozen=True)
@@ -60,12 +61,17 @@ def check(number: str, answer: Any) -> Verdict:
     except (ImportError, AttributeError):
         raise ValueError(f"number must be that of an exercise, as in '05.2', got {number!r}") from None
     if answer is None or answer is ...:
-        return Verdict(number, "There is no answer yet: put yours in the place of the dots.")
+        return Verdict(number, "There is no answer yet: hand over your function.")
+    if not callable(answer):
+        return Verdict(
+            number, f"Hand over the function itself, without brackets, not what it returns ({answer!r:.60})."
+        )
+    watched = Watched(answer, getattr(hint_for, "kind", None), getattr(hint_for, "unchanged", False))
     try:
-        return Verdict(number, hint_for(answer))
-    except NotImplementedError:
-        return Verdict(number, "There is no answer yet: the function still raises NotImplementedError.")
-    except Exception as error:
-        if "not callable" in str(error):
-            return Verdict(number, "Hand over the function itself, without brackets, not what it returns.")
-        return Verdict(number, f"Your answer raises {type(error).__name__}: {error}")
+        return Verdict(number, hint_from(hint_for, watched))
+    except Exception as problem:
+        return Verdict(
+            number,
+            f"The check itself can't go on, with a {type(problem).__name__} ({problem}). That is its fault, not yours; "
+            f"what your function answered to {shown(watched.arguments)} led to it.",
+        )

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from uavlab.exercises.hints import NOTHING, alike, recognised
+from uavlab.exercises.kinds import asks_for, number, numbers
 
 Triple = tuple[float, float, float]
 
@@ -37,11 +38,10 @@ TOO_STRONG = [(5.0, (0.0, -9.0), 90.0), (8.0, (-9.0, 1.0), 0.0)]
 same = partial(alike, absolute=1e-9)
 
 
+@asks_for(number("the force [N]"))
 def exercise_1(answer: Callable[..., float]) -> str:
     """01.1: the force of rain."""
     given = [answer(*shower) for shower in SHOWERS]
-    if any(force is None for force in given):
-        return NOTHING
     forces, right = np.asarray(given, dtype=float), [rain(*shower) for shower in SHOWERS]
     if same(forces, right):
         return ""
@@ -55,16 +55,11 @@ def exercise_1(answer: Callable[..., float]) -> str:
     )
 
 
+@asks_for(numbers((3,), "the force as a vector of three numbers: it has a direction"))
 def exercise_2(answer: Callable[..., Any]) -> str:
     """01.2: drag as a vector."""
     states = [(np.array(wind), np.array(velocity), area, density) for wind, velocity, area, density in STATES]
     given = [answer(*state) for state in states]
-    if any(force is None for force in given):
-        return NOTHING
-    if any(np.shape(force) == () for force in given):
-        return "The answer must have three components: a force has a direction. Which vector points along it?"
-    if any(np.shape(force) != (3,) for force in given):
-        return f"The answer must have three components, yours has the shape {np.shape(given[0])}."
     forces, right = np.asarray(given, dtype=float), [drag(*state) for state in states]
     if same(forces, right):
         return ""
@@ -78,6 +73,7 @@ def exercise_2(answer: Callable[..., Any]) -> str:
     )
 
 
+@asks_for(number("the heading [degrees], or None where none holds the course", none=True))
 def exercise_3(answer: Callable[..., float | None]) -> str:
     """01.3: the heading that holds a course."""
     cases = [(speed, np.array(wind), course) for speed, wind, course in COURSES]

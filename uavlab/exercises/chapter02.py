@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from uavlab.exercises.hints import alike, each_alike, recognised
+from uavlab.exercises.kinds import asks_for, number, numbers
 from uavlab.offsets import coverage, minimum_safe_distance, pauta_filter, pauta_radius
 
 Vector = tuple[float, float]
@@ -22,11 +23,10 @@ same_distances = partial(alike, relative=2e-4)  # the radius may be rounded to 3
 same_samples = partial(each_alike, same=np.array_equal)
 
 
+@asks_for(number("a probability, from 0 to 1"))
 def exercise_1(coverage_in_the_plane: Callable[[float], float]) -> str:
     """02.1: the probability that an offset in the plane lies within k standard deviations."""
     answers = [coverage_in_the_plane(k) for k in RADII]
-    if any(answer is None for answer in answers):
-        return "Your function returns nothing: its answer is a probability."
     if alike(answers, coverage(RADII, 2)):
         at_zero = coverage_in_the_plane(0.0)
         return "" if math.isclose(at_zero, 0.0, abs_tol=1e-9) else "A circle of radius 0 holds nothing."
@@ -68,6 +68,7 @@ PLANE_MISTAKES: list[tuple[Callable[[float], float], str]] = [
 ]
 
 
+@asks_for(number("the distance [m]"))
 def exercise_2(safe_distance: Callable[[float, float, Vector, Vector], float]) -> str:
     """02.2: the distance to keep when gusts push in the plane, widened towards the wind."""
     calm = [(sigma, body, (0.0, 0.0), (1.0, 0.0)) for sigma in (0.5, 1.0, 2.0) for body in (0.4, 1.0)]
@@ -77,8 +78,6 @@ def exercise_2(safe_distance: Callable[[float, float, Vector, Vector], float]) -
         (sigma, 0.6, mean, normal) for sigma in (0.7, 1.4) for mean in ((1.5, 0.0), (-0.4, 1.1)) for normal in normals
     ]
     in_calm = [safe_distance(*case) for case in calm]
-    if any(answer is None for answer in in_calm):
-        return "Your function returns nothing: its answer is a distance in metres."
     if not same_distances(in_calm, [widened(*case) for case in calm]):
         return recognised(in_calm, CALM_MISTAKES, [case[:2] for case in calm], same_distances) or (
             f"For σ = 1 m, a body of 1 m and no wind you get {float(in_calm[3]):.3f} m. Which radius holds 99.73 % in "
@@ -153,18 +152,13 @@ WIND_MISTAKES: list[tuple[Callable[[float, float, Vector, Vector], float], str]]
 ]
 
 
+@asks_for(numbers((None,), "the array of the samples that are left"), unchanged=True)
 def exercise_3(without_gross_errors: Callable[[np.ndarray], np.ndarray]) -> str:
     """02.3: the samples that are left when nothing lies beyond three standard deviations any more."""
     cases = contaminated_samples()
     answers = []
     for samples in cases:
-        given = samples.copy()
-        answer = without_gross_errors(given)
-        if answer is None:
-            return "Your function returns nothing: its answer is the array of the samples that are left."
-        if not np.array_equal(given, samples):
-            return "Your function changes the samples it is given. Work on a copy: the raw data are needed later."
-        answers.append(np.asarray(answer))
+        answers.append(np.asarray(without_gross_errors(samples)))
     if any(answer.dtype == bool for answer in answers):
         return "You return a mask. The answer is the samples themselves: index the array with the mask."
     right = [samples[pauta_filter(samples).kept] for samples in cases]

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm
 
-from uavlab.exercises.hints import NOTHING, alike, recognised
+from uavlab.exercises.hints import alike, recognised
+from uavlab.exercises.kinds import asks_for, number, whole_number
 
 FLIGHTS = (
     np.array([1, 2, 3, 4, 5, 6, 2, 1, 3, 2, 1, 4]),
@@ -52,12 +53,11 @@ PRINTED = [
 same = partial(alike, relative=0, absolute=1e-6)
 
 
+@asks_for(number("a share, from 0 to 1"))
 def exercise_1(answer: Callable[[np.ndarray, np.ndarray], float]) -> str:
     """03.1: the share of flights whose class was predicted too low."""
     true, predicted = FLIGHTS
     given = [answer(true, predicted), answer(true, true), answer(true, np.maximum(true - 1, 1))]
-    if any(share is None for share in given):
-        return NOTHING
     shares, right = np.asarray(given, dtype=float), [2 / 12, 0.0, float((true > 1).mean())]
     if same(shares, right):
         return ""
@@ -73,11 +73,10 @@ def exercise_1(answer: Callable[[np.ndarray, np.ndarray], float]) -> str:
     )
 
 
+@asks_for(whole_number("the number of the class"))
 def exercise_2(answer: Callable[[float, float, int], int]) -> str:
     """03.2: the class of the highest probability when the logarithm of the offset is normal."""
     given = [answer(*weather) for weather in WEATHERS]
-    if any(number is None for number in given):
-        return NOTHING
     classes, right = np.asarray(given, dtype=float), [most_probable(*weather) for weather in WEATHERS]
     if same(classes, right):
         return ""
@@ -93,11 +92,10 @@ def exercise_2(answer: Callable[[float, float, int], int]) -> str:
     )
 
 
+@asks_for(whole_number("the count, or -1 where none fits"))
 def exercise_3(answer: Callable[[float, int], int]) -> str:
     """03.3: the count that a printed percentage belongs to, or -1."""
     given = [answer(*case) for case in PRINTED]
-    if any(count is None for count in given):
-        return "Your function returns nothing for some figures: where no count fits, return -1."
     counts, right = np.asarray(given, dtype=float), [count_of(*case) for case in PRINTED]
     if same(counts, right):
         return ""

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from uavlab.exercises.hints import NOTHING, alike, recognised
+from uavlab.exercises.hints import alike, recognised
+from uavlab.exercises.kinds import asks_for, number, numbers
 
 SHAPE = (4, 5, 6)
 """No two extents are equal, so that none can stand for another."""
@@ -30,14 +31,11 @@ ON_THE_WALL = [(10.0, 2.0), (2.0, 2.0), (12.0, 3.0)]
 same = partial(alike, relative=0, absolute=1e-6)
 
 
+@asks_for(numbers((3,), "three whole numbers: return i, j, k"))
 def exercise_1(answer: Callable[[int, tuple[int, int, int]], Sequence[int]]) -> str:
     """04.1: from a node code back to its voxel."""
     codes = range(math.prod(SHAPE))
     given = [answer(code, SHAPE) for code in codes]
-    if any(index is None for index in given):
-        return NOTHING
-    if any(np.shape(index) != (3,) for index in given):
-        return "The answer must be three numbers: return i, j, k."
     nx, ny, nz = SHAPE
     voxels, right = np.asarray(given, dtype=float), [(code // (ny * nz), code // nz % ny, code % nz) for code in codes]
     if same(voxels, right):
@@ -64,13 +62,10 @@ def exercise_1(answer: Callable[[int, tuple[int, int, int]], Sequence[int]]) -> 
     )
 
 
+@asks_for(number("the distance [m]"))
 def exercise_2(answer: Callable[[np.ndarray, np.ndarray, float], float]) -> str:
     """04.2: the distance from any point to a voxel."""
     given = [answer(np.array(point), np.array(voxel), cell) for point, voxel, cell in BOXES]
-    if any(distance is None for distance in given):
-        return NOTHING
-    if any(np.shape(distance) != () for distance in given):
-        return "The answer must be one number: the three axes still have to be joined to one distance."
     distances, right = np.asarray(given, dtype=float), [box_distance(*case) for case in BOXES]
     if same(distances, right):
         return ""
@@ -84,11 +79,10 @@ def exercise_2(answer: Callable[[np.ndarray, np.ndarray, float], float]) -> str:
     )
 
 
+@asks_for(number("the clearance [m]"))
 def exercise_3(answer: Callable[[float, float], float]) -> str:
     """04.3: the clearance that is certain in a street."""
     given = [answer(gap, cell) for gap, cell in STREETS + ON_THE_WALL]
-    if any(clearance is None for clearance in given):
-        return NOTHING
     clearances, right = np.asarray(given, dtype=float), [certain_clearance(*case) for case in STREETS + ON_THE_WALL]
     if same(clearances, right):
         return ""

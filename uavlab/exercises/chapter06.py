@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from uavlab.exercises.hints import alike, each_alike, recognised
+from uavlab.exercises.kinds import asks_for, number, numbers
 from uavlab.planners import repulsion
 
 Vector = Sequence[float] | np.ndarray
@@ -25,6 +26,7 @@ Move = tuple[int, ...]
 MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if any(move)]
 
 
+@asks_for(numbers((3,), "the force, a vector of three numbers, also where it is zero"))
 def exercise_1(push_of_voxel: Callable[..., np.ndarray]) -> str:
     """06.1: the force of one voxel on a UAV at a point."""
     rng = np.random.default_rng(71)
@@ -34,18 +36,7 @@ def exercise_1(push_of_voxel: Callable[..., np.ndarray]) -> str:
     points[::4, 0] = lows[::4, 0] + 0.3  # beside a face or an edge, too
     questions = [(point, low, 7.0, 4.0) for point, low in zip(points, lows, strict=True)]
     answers = [push_of_voxel(*question) for question in questions]
-    if any(answer is None for answer in answers):
-        return "Your function returns nothing for some points: beyond the reach the force is a vector of zeros."
     within = np.array([distance_to_voxel(*question[:2]) <= 4.0 for question in questions])
-    numbers = np.array([np.ndim(answer) == 0 for answer in answers])
-    if numbers[within].any():
-        return (
-            "You return a number. A size can't steer: away from which point is the UAV pushed, and in which direction?"
-        )
-    if numbers.any():
-        return "Beyond the reach you return a number: no force is a vector, too, of three zeros."
-    if any(np.shape(answer) != (3,) for answer in answers):
-        return f"The force is a vector of three numbers, yours has the shape {np.shape(answers[0])}."
     given = np.array(answers, dtype=float)
     same = partial(alike, relative=1e-9, absolute=1e-12)
     near, far = (list(itertools.compress(questions, chosen)) for chosen in (within, ~within))
@@ -133,16 +124,13 @@ PUSH_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
 ]
 
 
+@asks_for(number("the distance [m]"))
 def exercise_2(balance: Callable[[float, float, float], float]) -> str:
     """06.2: the distance at which pull and push cancel, in front of a wall."""
     questions = [
         (1.0, 5.0, 5.0), (2.0, 5.0, 5.0), (1.0, 500.0, 5.0), (1.0, 5.0, 12.0), (0.3, 80.0, 2.5), (40.0, 0.7, 3.0),
     ]  # fmt: skip
     answers = [balance(*question) for question in questions]
-    if any(answer is None for answer in answers):
-        return "Your function returns nothing: its answer is the distance [m]."
-    if any(np.ndim(answer) != 0 for answer in answers):
-        return f"The answer is one number, yours has the shape {np.shape(answers[0])}."
     same = partial(each_alike, same=partial(math.isclose, abs_tol=1e-6))
     if same(answers, [stopping_distance(*question) for question in questions]):
         return ""
@@ -190,6 +178,7 @@ BALANCE_MISTAKES: list[tuple[Callable[[float, float, float], float], str]] = [
 ]
 
 
+@asks_for(numbers((3,), "one of the moves that you are given, or None", none=True))
 def exercise_3(best_move: Callable[[Vector, list[Move]], Any]) -> str:
     """06.3: the legal move with the smallest angle to the force, or None."""
     rng = np.random.default_rng(73)

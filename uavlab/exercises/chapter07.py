@@ -14,6 +14,7 @@ from itertools import product
 import numpy as np
 
 from uavlab.exercises.hints import alike, each_alike, recognised
+from uavlab.exercises.kinds import asks_for, number, numbers, parts
 from uavlab.planners import repulsion
 from uavlab.resilience import DISTURBANCES, LEVELS, LOADS, ConditionCheck, resilience_level
 
@@ -28,11 +29,10 @@ CALM += [(d, 3.5, (0.0, 0.0), (1.0, 0.0), 0.6) for d in (0.5, 1.5, 3.0)]
 WINDY = [(d, 5.5, (0.4, -0.1), normal, 0.6) for d in (1.5, 3.5, 4.5) for normal in NORMALS]
 
 
+@asks_for(number("the price of a metre"))
 def exercise_1(price: Price) -> str:
     """07.1: the price of a metre near a wall, with wind and load."""
     in_calm = [price(*case) for case in CALM]
-    if any(answer is None for answer in in_calm):
-        return "Your function returns nothing: its answer is a price."
     if not alike(in_calm, [right_price(*case) for case in CALM]):
         without_wind = [(d, keep, load) for d, keep, _, _, load in CALM]
         return recognised(in_calm, CALM_MISTAKES, without_wind, alike) or (
@@ -124,16 +124,13 @@ WIND_MISTAKES: list[tuple[Price, str]] = [
 ]
 
 
+@asks_for(parts(3, "points by load, points by disturbance, and four thresholds"))
 def exercise_2(score: Callable[[], tuple[Mapping[str, float], Mapping[str, float], Sequence[float]]]) -> str:
     """07.2: points for loads and disturbances and thresholds that give Table 3."""
     answer = score()
-    if answer is None:
-        return "Your function returns nothing: its answer is two dictionaries and four thresholds."
-    if len(answer) != 3:
-        return (
-            f"The answer has three parts: points by load, points by disturbance, thresholds. Yours has {len(answer)}."
-        )
     loads, disturbances, thresholds = answer
+    if not all(isinstance(points, Mapping) for points in (loads, disturbances)) or not isinstance(thresholds, Sequence):
+        return "The points are two dictionaries, with a number for each name; the thresholds are a list."
     for what, given, wanted in (("load", loads, LOADS), ("disturbance", disturbances, DISTURBANCES)):
         missing = [name for name in wanted if name not in given]
         if missing:
@@ -161,13 +158,9 @@ def exercise_2(score: Callable[[], tuple[Mapping[str, float], Mapping[str, float
     )
 
 
+@asks_for(numbers(lambda offsets, *_: (len(offsets),), "a list with a boundary for each offset"))
 def exercise_3(boundaries: Callable[[Sequence[float], float, float, int, float], Sequence[float]]) -> str:
     """07.3: the boundary after each offset, raised at once and lowered with hysteresis."""
-    example = boundaries([1, 2.7, 1, 1, 1, 1], 2, 0.5, 3, 0.8)
-    if example is None:
-        return "Your function returns nothing: its answer is a list with a boundary for each offset."
-    if len(example) != 6:
-        return f"There are six offsets in the example, and you return {len(example)} boundaries."
     cases = [[1, 2.7, 1, 1, 1, 1], *([float(o) for o in offsets_seen(seed)] for seed in range(6))]
     answers = [np.asarray(boundaries(case, 2.0, 0.5, 3, 0.8), dtype=float) for case in cases]
     same = partial(each_alike, same=np.allclose)

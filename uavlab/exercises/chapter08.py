@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from uavlab.exercises.hints import NOTHING, each_alike, recognised
+from uavlab.exercises.hints import each_alike, recognised
+from uavlab.exercises.kinds import asks_for, number
 
 GRAVITY = 9.81
 FALLS = [
@@ -33,13 +34,10 @@ def same(given: Sequence[Any], right: Sequence[float], relative: float = 1e-9) -
     return each_alike(map(float, given), right, partial(math.isclose, rel_tol=relative, abs_tol=1e-15))
 
 
+@asks_for(number("the speed [m/s]"))
 def exercise_1(answer: Callable[[float, float, float, float], float]) -> str:
     """08.1: vertical speed after a fall from rest with drag."""
     given = [answer(*fall) for fall in FALLS]
-    if any(speed is None for speed in given):
-        return NOTHING
-    if any(np.shape(speed) != () for speed in given):
-        return "The answer must be one number, the speed in m/s."
     same_speeds = partial(same, relative=1e-3)  # g = 9.8 m/s² is right too
     if same_speeds(given, [speed_after(*fall) for fall in FALLS]):
         return ""
@@ -109,11 +107,10 @@ FALL_MISTAKES: list[tuple[Callable[[float, float, float, float], float], str]] =
 ]
 
 
+@asks_for(number("a chance, from 0 to 1"))
 def exercise_2(answer: Callable[[float, float], float]) -> str:
     """08.2: the chance that a blow kills, in the open too."""
     given = [answer(*blow) for blow in BLOWS]
-    if any(chance is None for chance in given):
-        return NOTHING
     if not same(given, [chance_to_die(*blow) for blow in BLOWS]):
         return recognised(given, FATALITY_MISTAKES, BLOWS, same) or (
             f"Behind shelter 0.5 a blow of 555 J kills with {answer(555.0, 0.5):.4f}, you say. Two tests: 10⁶ J must "
@@ -128,8 +125,6 @@ def exercise_2(answer: Callable[[float, float], float]) -> str:
         )
     except OverflowError:
         return "With shelter it is right. In the open the power grows without bound: what does the chance go to then?"
-    if any(chance is None for chance in limits):
-        return "With shelter it is right. In the open your function returns nothing."
     if same(limits, [0, 0, 1, 1, 1]):
         return ""
     if same(limits, [1, 1, 1, 1, 1]):
@@ -177,14 +172,11 @@ FATALITY_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
 ]
 
 
+@asks_for(number("the expected deaths"))
 def exercise_3(answer: Callable[[np.ndarray, np.ndarray, float, float], float]) -> str:
     """08.3: expected deaths on a route over a risk map."""
     missions = [random_mission(seed) for seed in range(6)]
     given = [answer(rate.copy(), voxels.copy(), cell, speed) for rate, voxels, cell, speed in missions]
-    if any(cost is None for cost in given):
-        return NOTHING
-    if any(np.shape(cost) != () for cost in given):
-        return "The answer must be one number: the parts of the route still have to be added up."
     if same(given, [expected_deaths(*mission) for mission in missions], relative=1e-6):
         return ""
     if hint := recognised(given, ROUTE_MISTAKES, missions, same):

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from uavlab.exercises.hints import NOTHING, alike, recognised
+from uavlab.exercises.hints import alike, recognised
+from uavlab.exercises.kinds import asks_for, numbers
 
 Step = tuple[np.ndarray, np.ndarray]
 Function = Callable[[np.ndarray], float]
@@ -20,25 +21,13 @@ Function = Callable[[np.ndarray], float]
 same = partial(alike, relative=1e-9)
 
 
+@asks_for(
+    numbers(lambda x, *_: (2, *x.shape), "two parts, positions and velocities, each of the shape of x"), unchanged=True
+)
 def exercise_1(fly: Callable[..., Any]) -> str:
     """11.1: positions and velocities of a swarm after one step, the velocity limited, the box closed."""
     questions = [swarm_question(seed) for seed in range(6)]
-    given = []
-    for question in questions:
-        copies = [np.copy(part) for part in question]
-        answer = fly(*copies)
-        if answer is None:
-            return NOTHING
-        if any(not np.array_equal(a, b) for a, b in zip(copies, question, strict=True)):
-            return "Your function changes an array that it was given. The caller may still need it: make new ones."
-        if not isinstance(answer, tuple | list) or len(answer) != 2:
-            return "The answer has two parts, positions and velocities."
-        given.append(tuple(np.asarray(part, dtype=float) for part in answer))
-        shapes = [part.shape for part in given[-1]]
-        if shapes != [question[0].shape] * 2:
-            return (
-                f"Positions and velocities have shape {question[0].shape}, as x; yours have {shapes[0]}, {shapes[1]}."
-            )
+    given = [tuple(np.asarray(part, dtype=float) for part in fly(*question)) for question in questions]
     right = [flown(*question) for question in questions]
     if same(given, right):
         return ""
@@ -147,6 +136,7 @@ FLIGHT_MISTAKES: list[tuple[Callable[..., Step], str]] = [
 ]
 
 
+@asks_for(numbers(lambda f, x, *_: x.shape, "a point, with as many coordinates as x"), unchanged=True)
 def exercise_2(walk: Callable[..., Any]) -> str:
     """11.2: where a beetle stands after one step."""
     rng = np.random.default_rng(1020)
@@ -154,17 +144,7 @@ def exercise_2(walk: Callable[..., Any]) -> str:
         (f, rng.uniform(-2, 2, 3), rng.normal(size=3) * rng.uniform(0.2, 5), rng.uniform(0.5, 3), rng.uniform(0.1, 0.4))
         for f in (bowl, slope, waves) * 20
     ]
-    given = []
-    for f, x, b, reach, step in questions:
-        stand, look = x.copy(), b.copy()
-        answer = walk(f, stand, look, reach, step)
-        if answer is None:
-            return NOTHING
-        if not (np.array_equal(stand, x) and np.array_equal(look, b)):
-            return "Your function changes x or b themselves. The caller may still need them: return a new array."
-        if np.shape(answer) != (3,):
-            return f"The answer is a point of three numbers here, as x; yours has the shape {np.shape(answer)}."
-        given.append(np.asarray(answer, dtype=float))
+    given = [np.asarray(walk(*question), dtype=float) for question in questions]
     if same(given, [walked(*question) for question in questions]):
         stay = walk(lambda point: 1.0, np.zeros(3), np.ones(3), 1.0, 1.0)
         if np.allclose(stay, 0.0):
@@ -172,7 +152,7 @@ def exercise_2(walk: Callable[..., Any]) -> str:
         return "Where both sides smell the same your beetle walks. Which side is better there?"
     if hint := recognised(given, WALK_MISTAKES, questions, same):
         return hint
-    f, x, b, reach, step = questions[0]
+    _, x, b, reach, step = questions[0]
     gone, along = given[0] - x, b / np.linalg.norm(b)
     return (
         f"With f = |x|², x = {np.round(x, 2)}, b = {np.round(b, 2)}, reach = {reach:.2f} and step = {step:.2f} your "
@@ -256,19 +236,14 @@ WALK_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
 ]
 
 
+@asks_for(numbers((3,), "three numbers: the share, and both ends of its interval"))
 def exercise_3(share_of_wins: Callable[..., Any]) -> str:
     """11.3: the share of runs that are won, and its interval by resampling maps."""
     questions = [gaps_of(seed) for seed in range(10)]
     answers = []
     for seed, (ours, theirs) in enumerate(questions):
-        answer = share_of_wins(ours.copy(), theirs.copy(), np.random.default_rng(seed))
-        if answer is None:
-            return NOTHING
-        if np.size(answer) != 3:
-            return (
-                f"The answer has three numbers: the share, and both ends of its interval. Yours has {np.size(answer)}."
-            )
-        answers.append(np.ravel(np.asarray(answer, dtype=float)))
+        answer = share_of_wins(ours, theirs, np.random.default_rng(seed))
+        answers.append(np.asarray(answer, dtype=float))
     given = np.array(answers)
     same_shares = partial(alike, relative=1e-5, absolute=1e-9)
     right = [won(*question).mean() for question in questions]

@@ -12,38 +12,19 @@ from typing import Any
 
 import numpy as np
 
-from uavlab.exercises.hints import NOTHING, alike, each_alike, recognised
+from uavlab.exercises.hints import alike, each_alike, recognised
+from uavlab.exercises.kinds import asks_for, numbers
 from uavlab.spline import cubic_bspline
 
 same = partial(each_alike, same=partial(alike, relative=1e-7, absolute=1e-9))
 
 
-def answers_to(
-    function: Callable[..., Any], questions: list[tuple[Any, ...]], shapes: list[tuple[int, ...]], what: str
-) -> tuple[list[np.ndarray], str]:
-    """What a function answers to questions, or a hint why that isn't even of the right kind."""
-    given: list[np.ndarray] = []
-    for question, shape in zip(questions, shapes, strict=True):
-        copies = [np.copy(part) if np.ndim(part) else part for part in question]
-        answer = function(*copies)
-        if answer is None:
-            return given, NOTHING
-        if any(not np.array_equal(a, b) for a, b in zip(copies, question, strict=True)):
-            return given, "Your function changes an array that it was given. The caller may still need it: make a copy."
-        values = np.asarray(answer, dtype=float)
-        if values.shape != shape:
-            return given, f"{what} has the shape {shape} here, yours has {values.shape}."
-        given.append(values)
-    return given, ""
-
-
+@asks_for(numbers(lambda first, *_: first.shape[:1], "a curvature for each point"), unchanged=True)
 def exercise_1(curvature: Callable[..., Any]) -> str:
     """12.1: the curvature of a curve in space, by any parameter."""
     rng = np.random.default_rng(1110)
     questions = [tuple(rng.normal(0, size, (2, 6, 3))) for size in (0.5, 1.0, 3.0)]
-    given, hint = answers_to(curvature, questions, [(6,)] * 3, "The curvature")
-    if hint:
-        return hint
+    given = [np.asarray(curvature(*question), dtype=float) for question in questions]
     if same(given, [bent(*question) for question in questions]):
         return ""
     return recognised(given, CURVATURE_MISTAKES, questions, same) or (
@@ -106,13 +87,12 @@ CURVATURE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], s
 ]
 
 
+@asks_for(numbers(lambda waypoints: waypoints.shape, "a control point for each waypoint"), unchanged=True)
 def exercise_2(control_points: Callable[..., Any]) -> str:
     """12.2: the control points of a B-spline with phantom ends that passes through waypoints."""
     rng = np.random.default_rng(1120)
     questions = [(rng.uniform(-20, 20, (count, axes)),) for count, axes in ((6, 3), (4, 3), (3, 2), (9, 2))]
-    given, hint = answers_to(control_points, questions, [question[0].shape for question in questions], "The answer")
-    if hint:
-        return hint
+    given = [np.asarray(control_points(*question), dtype=float) for question in questions]
     waypoints = [question[0] for question in questions]
     knots = [cubic_bspline(points, per_segment=1) for points in given]
     if same(knots, waypoints):
@@ -181,12 +161,11 @@ CONTROL_MISTAKES: list[tuple[Callable[[np.ndarray], np.ndarray], str]] = [
 ]
 
 
+@asks_for(numbers(lambda distance, *_: distance.shape, "a speed for each point"), unchanged=True)
 def exercise_3(speeds: Callable[..., Any]) -> str:
     """12.3: the fastest speeds along a curve, from rest to rest, with limits on speed and acceleration."""
     questions = [bends(seed) for seed in range(5)]
-    given, hint = answers_to(speeds, questions, [question[0].shape for question in questions], "The answer")
-    if hint:
-        return hint
+    given = [np.asarray(speeds(*question), dtype=float) for question in questions]
     if same(given, [driven(*question) for question in questions]):
         return ""
     return recognised(given, SPEED_MISTAKES, questions, same) or wrong_somewhere(given, questions)

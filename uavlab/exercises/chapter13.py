@@ -13,7 +13,8 @@ from functools import partial
 import numpy as np
 from scipy.stats import beta, norm
 
-from uavlab.exercises.hints import NOTHING, alike, each_alike, recognised
+from uavlab.exercises.hints import alike, each_alike, recognised
+from uavlab.exercises.kinds import asks_for, number, numbers
 from uavlab.vehicle import GRAVITY
 from uavlab.weather.forces import STANDARD_AIR
 
@@ -29,14 +30,10 @@ FLOWN = [
 ]
 
 
+@asks_for(numbers((3,), "the acceleration, a vector of three numbers"))
 def exercise_1(acceleration: Acceleration) -> str:
     """13.1: thrust, drag of the relative wind and weight."""
     answers = [acceleration(f.copy(), w.copy(), v.copy(), m, a) for f, w, v, m, a in FLOWN]
-    if any(answer is None for answer in answers):
-        return NOTHING
-    for answer in answers:
-        if np.shape(answer) != (3,):
-            return f"The acceleration is a vector of three numbers; yours has shape {np.shape(answer)}."
     if each_alike(answers, [right_acceleration(*case) for case in FLOWN]):
         return ""
     if hint := recognised(answers, ACCELERATIONS, FLOWN, each_alike):
@@ -117,13 +114,10 @@ ACCELERATIONS: list[tuple[Acceleration, str]] = [
 TRIALS = [(0, 100), (1, 1000), (3, 20), (10, 10), (50, 200), (0, 1), (19, 2000)]
 
 
+@asks_for(numbers((2,), "two numbers, (low, high)"))
 def exercise_2(interval: Interval) -> str:
     """13.2: the exact interval of a crash probability."""
     answers = [interval(*trial) for trial in TRIALS]
-    if any(answer is None for answer in answers):
-        return NOTHING
-    if any(np.shape(answer) != (2,) for answer in answers):
-        return "The answer is two numbers, (low, high)."
     ends = np.array(answers, dtype=float)
     wanted = np.array([right_interval(*trial) for trial in TRIALS])
     same = partial(alike, absolute=1e-12)
@@ -209,11 +203,10 @@ WALLS = [(1.0, 8.0, 0.001, 0.5), (1.5, 20.0, 0.01, 0.5), (0.6, 60.0, 0.002, 0.3)
 EASY = (1.0, 0.5, 0.1, 0.4)
 
 
+@asks_for(number("the distance [m]"))
 def exercise_3(distance: Distance) -> str:
     """13.3: how far to keep off so that at most some share of flights touches the wall."""
     answers = [distance(*wall) for wall in WALLS]
-    if any(answer is None for answer in answers):
-        return NOTHING
     same = partial(alike, relative=1e-5)
     touching = [right_distance(sigma, seconds, -math.log1p(-p), r) for sigma, seconds, p, r in WALLS]
     if same(answers, [right_distance(*wall) for wall in WALLS]) or same(answers, touching):

@@ -10,7 +10,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ import shapely
 
 from uavlab.city import City, Place
 from uavlab.exercises.hints import NOTHING, alike, recognised
+from uavlab.exercises.kinds import asks_for, number, numbers
 from uavlab.mission import Mission
 from uavlab.mission.corridor import corner, cut_off
 from uavlab.mission.fences import polygon_on
@@ -30,34 +30,21 @@ Questions = Sequence[tuple[Any, ...]]
 Mistakes = Sequence[tuple[Function, str]]
 
 
-def answers_to(function: Function, questions: Questions, shape: tuple[int, ...], what: str) -> tuple[Any, str]:
-    """What a function answers to questions, or a hint why that isn't even of the right kind."""
-    given: list[np.ndarray] = []
-    for question in questions:
-        copies = [part.copy() if isinstance(part, np.ndarray) else part for part in question]
-        answer = function(*copies)
-        if answer is None:
-            return given, NOTHING
-        if any(not np.array_equal(one, other) for one, other in zip(copies, question, strict=True)):
-            return given, "Your function changes an array that it was given. The caller may still need it: make a copy."
-        values = np.asarray(answer, dtype=object)
-        if not all(isinstance(value, Real) for value in values.flat):
-            return given, f"{what}; yours is {answer!r:.40}, of the type {type(answer).__name__}."
-        if values.shape != shape:
-            return given, f"{what}; yours has the shape {values.shape}."
-        given.append(values.astype(float))
-    return given, ""
+def answers_to(function: Function, questions: Questions) -> np.ndarray:
+    """What a function answers to questions, one by one."""
+    return np.array([function(*question) for question in questions], dtype=float)
 
 
 STEP = math.radians(1e-7) * 6_371_000.0
 LATITUDES = [(47.25,), (-33.9,), (60.0,), (12.0,)]
 
 
+@asks_for(numbers((2,), "two numbers, (north, east)"))
 def exercise_1(digit_in_metres: Function) -> str:
     """14.1: one step of MAVLink's degrees in metres."""
-    given, hint = answers_to(digit_in_metres, LATITUDES, (2,), "The answer is two numbers, (north, east)")
-    if hint or alike(given, [step(*latitude) for latitude in LATITUDES]):
-        return hint
+    given = answers_to(digit_in_metres, LATITUDES)
+    if alike(given, [step(*latitude) for latitude in LATITUDES]):
+        return ""
     (north, east), (latitude,) = given[0], LATITUDES[0]
     return recognised(given, DIGITS, LATITUDES, alike) or (
         f"At {latitude}° your step is {north:.4g} m to the north and {east:.4g} m to the east. Draw the two circles: "
@@ -86,14 +73,12 @@ DIGITS: Mistakes = [
 HEIGHTS = [(65.0, 12.0, 430.0, 31.0), (20.0, -4.0, 95.0, 9.0), (8.5, 40.0, 17.0, 2.5)]
 
 
+@asks_for(number("the altitude [m]"))
 def exercise_2(altitude: Function) -> str:
     """14.2: the altitude of a point in three frames."""
     given = {}
     for frame in ALTITUDES:
-        questions = [(frame, *heights) for heights in HEIGHTS]
-        given[frame], hint = answers_to(altitude, questions, (), f"In {frame!r} the answer is one number")
-        if hint:
-            return hint if hint != NOTHING else f"In {frame!r} your function returns nothing: where is its return?"
+        given[frame] = answers_to(altitude, [(frame, *heights) for heights in HEIGHTS])
     if alike(given["home"], given["sea"]) and alike(given["home"], given["terrain"]):
         return "Your answer is the same in all three frames. From what does each of them measure?"
     for frame, (right, mistakes) in ALTITUDES.items():
@@ -149,12 +134,13 @@ CORNERS: list[tuple[Any, ...]] = [
 GENTLE, SHARP = CORNERS[:4], CORNERS[4:]
 
 
+@asks_for(number("the margin [m]"), unchanged=True)
 def exercise_3(corner_margin: Function) -> str:
     """14.3: how far from its legs the way around a corner may lie."""
-    given, hint = answers_to(corner_margin, CORNERS, (), "The answer is one number")
+    given = answers_to(corner_margin, CORNERS)
     same = partial(alike, absolute=1e-6)
-    if hint or same(given, [margin(*case) for case in CORNERS]):
-        return hint
+    if same(given, [margin(*case) for case in CORNERS]):
+        return ""
     gentle, sharp = given[: len(GENTLE)], given[len(GENTLE) :]
     if same(gentle, [margin(*case) for case in GENTLE]):
         return recognised(sharp, SHARP_MISTAKES, SHARP, same) or (
@@ -215,11 +201,12 @@ SHARP_MISTAKES: Mistakes = [
 TRANSFERS = [(20, 0.1, 3), (300, 0.1, 5), (12, 0.3, 4), (5, 0.25, 2), (2, 0.5, 1)]
 
 
+@asks_for(number("a chance, from 0 to 1"))
 def exercise_4(chance_of_transfer: Function) -> str:
     """14.4: the chance that all items of a mission arrive over a link that loses some."""
-    given, hint = answers_to(chance_of_transfer, TRANSFERS, (), "The chance is one number")
-    if hint or alike(given, [chance(*case) for case in TRANSFERS]):
-        return hint
+    given = answers_to(chance_of_transfer, TRANSFERS)
+    if alike(given, [chance(*case) for case in TRANSFERS]):
+        return ""
     (items, loss, tries), found = TRANSFERS[0], float(given[0])
     return recognised(given, CHANCES, TRANSFERS, alike) or (
         f"For {items} items, {loss:.0%} loss and {tries} tries you give {found:.4g}. "
@@ -258,12 +245,10 @@ FLIGHTS = [(1.0, 4.7, 1100.0), (3.0, 4.7, 1100.0), (1.2, 1.5, 60.0), (0.5, 2.0, 
 FOR_EVER = [(15.0, 4.7, 1100.0), (6.0, 2.0, 300.0)]
 
 
+@asks_for(number("the time [s], math.inf where no flight is too long"))
 def exercise_5(longest_flight: Function) -> str:
     """14.5: how long the error of GPS stays within a margin."""
-    what = "The time is one number, in seconds"
-    given, hint = answers_to(longest_flight, FLIGHTS, (), what)
-    if hint:
-        return hint
+    given = answers_to(longest_flight, FLIGHTS)
     if not alike(given, [longest(*case) for case in FLIGHTS]):
         (limit, sigma, correlation), found = FLIGHTS[1], float(given[1])
         then = 3 * sigma * math.sqrt(max(0.0, 1 - math.exp(-2 * max(found, 0.0) / correlation)))
@@ -271,8 +256,9 @@ def exercise_5(longest_flight: Function) -> str:
             f"For a margin of {limit:g} m, σ = {sigma:g} m and τ = {correlation:g} s you give {found:.4g} s. Then "
             f"3σ is {then:.2f} m. Put σ(t) into 3σ(t) = margin, and solve for t."
         )
+    hint = ""
     try:
-        given, hint = answers_to(longest_flight, FOR_EVER, (), what)
+        given = answers_to(longest_flight, FOR_EVER)
     except (ArithmeticError, ValueError) as error:
         hint = f"Your function raises {error!r}."
     if not hint and not np.isposinf(given).all():

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-NOTHING = "Your function returns nothing: it needs a line with return."
+NOTHING = "Your function returns nothing: it needs a line with `return`."
 """The hint for what most beginners forget."""
 
 
