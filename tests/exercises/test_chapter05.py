@@ -130,6 +130,11 @@ def test_search_without_a_mistake_is_right():
     assert check("05.3", search)
 
 
+def test_dijkstra_s_search_is_told_so():
+    verdict = check("05.3", lambda graph, start, goal, estimate: search(graph, start, goal, lambda place: 0.0))
+    assert "never asks for the estimate" in verdict.hint
+
+
 def test_search_that_returns_nothing_is_told_so():
     assert "returns nothing" in check("05.3", lambda *question: None).hint
 

@@ -176,7 +176,7 @@ def exercise_3(without_gross_errors: Callable[[np.ndarray], np.ndarray]) -> str:
 
 
 def contaminated_samples() -> list[np.ndarray]:
-    """Offsets with gross errors: on one side, on both, around a mean that isn't 0, and none."""
+    """Offsets with gross errors: on one side, on both, around a mean that isn't 0, and none; and a few in doubt."""
     rng = np.random.default_rng(23)
     cases = []
     for mean, errors in (
@@ -188,7 +188,8 @@ def contaminated_samples() -> list[np.ndarray]:
         good = np.clip(rng.normal(mean, 1.0, 80), mean - 2.2, mean + 2.2)
         samples = np.concatenate([good, errors])
         cases.append(samples[rng.permutation(len(samples))])
-    return [*cases, np.linspace(-1.0, 1.0, 20)]
+    few = np.append(np.tile([0.64, -0.64], 5), 10.0)  # 10 is beyond 3σ with n, and within with n − 1
+    return [*cases, np.linspace(-1.0, 1.0, 20), few]
 
 
 def one_round(samples: np.ndarray) -> np.ndarray:
@@ -213,11 +214,22 @@ def two_sigma(samples: np.ndarray) -> np.ndarray:
     return samples
 
 
+def with_n(samples: np.ndarray) -> np.ndarray:
+    while (far := np.abs(samples - samples.mean()) > 3 * samples.std()).any():
+        samples = samples[~far]
+    return samples
+
+
 def errors_only(samples: np.ndarray) -> np.ndarray:
     return samples[~pauta_filter(samples).kept]
 
 
 FILTER_MISTAKES: list[tuple[Callable[[np.ndarray], np.ndarray], str]] = [
+    (
+        with_n,
+        "Of many samples the right ones are left, of few one too few: your σ divides by n, which NumPy does unless "
+        "told otherwise. The exercise asks for n − 1.",
+    ),
     (
         one_round,
         "That is one round. The largest errors widened the σ that the others were judged by: what is σ now?",
