@@ -94,7 +94,8 @@ PACKAGES = (
 MODULES = ("route", "vehicle", "power", "resilience", "statistics", "sweep")
 
 MADE_BY_THE_LIBRARY = {
-    "city.Source", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights", "flight.Rate",
+    "city.Source", "exercises.Progress", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights",
+    "flight.Rate",
     "mavlink.CommandDeniedError", "mavlink.Link", "mavlink.MissionRejectedError", "mavlink.Telemetry", "mission.Check",
     "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "plot.Sliders",
     "plot.Style", "power.Power",
@@ -346,6 +347,7 @@ CALLS = {
     "city.table1_city": lambda: {"cell": 5.0},
     # exercises
     "exercises.check": lambda: {"number": "05.1", "answer": 3.0},
+    "exercises.progress": lambda: {"folder": str(Path(__file__).parents[2] / "notebooks" / "exercises")},
     # flight
     "flight.Autopilot": lambda: {
         "controller": ADVANCED, "speed": 5.0, "trimmed": True, "gps": Gps(), "monitor": monitor(),
