@@ -737,9 +737,9 @@ assert not ways["hard 3.5 m"].reached
 plot.section(hall, 6.5, None, ways)
 
 # %% [markdown]
-# The soft zone is flat: half a metre from the frame is as dear as three. So with $\omega = 1$ the route takes the
+# The soft zone is flat: half a metre from the frame costs as much as three. So with $\omega = 1$ the route takes the
 # short way around the frame; only a higher price sends it through the middle, where the zone is thinnest. A zone that
-# gets dearer towards the wall is what REPARE tries to make with a force, in [07 REPARE](07_repare.ipynb).
+# gets more expensive towards the wall is what REPARE tries to make with a force, in [07 REPARE](07_repare.ipynb).
 #
 # *There is no way* is an answer, not an error: `reached` is `False`, the cost is infinite, and the reason says how
 # far the search got. It is also a proof. A* has seen every voxel within reach, so no route with that clearance exists

@@ -757,7 +757,7 @@ plot.lines(away, curves, "distance to the wall [m]", "price of a metre, above 1"
            x_range=(0, 10), y_range=(1e-3, 1e3))  # fmt: skip
 
 # %% [markdown]
-# (Discs: REPARE, nothing from $D_\text{min}$ on.) At $D_\text{min}$ itself, three standard deviations from the body,
+# (Marks: REPARE, nothing from $D_\text{min}$ on.) At $D_\text{min}$ itself, three standard deviations from the body,
 # Rice still charges a metre for a metre, and REPARE nothing. Half a metre from the wall REPARE charges more than the
 # touches are worth; nobody goes there anyway.
 #

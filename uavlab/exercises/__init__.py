@@ -1,7 +1,8 @@
 """Checks of the course's exercises: what is right, or what is wrong and why, without giving the answer away.
 
 `check("05.2", answer)` looks for exercise 2 of chapter 5. Each chapter is a module, each exercise a function of the
-answer that returns a hint, or nothing when the answer is right. What they share is in `uavlab.exercises.hints`.
+answer that returns a hint, or nothing when the answer is right. What they share is in `uavlab.exercises`: the kinds of
+answers in `kinds`, known mistakes in `hints`, how a student's function is called in `watching`.
 """
 
 from __future__ import annotations

@@ -156,9 +156,7 @@ WIND_MISTAKES: list[tuple[Callable[[float, float, Vector, Vector], float], str]]
 def exercise_3(without_gross_errors: Callable[[np.ndarray], np.ndarray]) -> str:
     """02.3: the samples that are left when nothing lies beyond three standard deviations any more."""
     cases = contaminated_samples()
-    answers = []
-    for samples in cases:
-        answers.append(np.asarray(without_gross_errors(samples)))
+    answers = [np.asarray(without_gross_errors(samples)) for samples in cases]
     if any(answer.dtype == bool for answer in answers):
         return "You return a mask. The answer is the samples themselves: index the array with the mask."
     right = [samples[pauta_filter(samples).kept] for samples in cases]

@@ -185,7 +185,7 @@ def exercise_3(best_move: Callable[[Vector, list[Move]], Any]) -> str:
     forces = rng.standard_normal((200, 3)) * 10 ** rng.uniform(-2, 2, (200, 1))
     legal = [[MOVES[n] for n in rng.permutation(26)[: rng.integers(3, 26)]] for _ in forces]
     questions = list(zip(forces, legal, strict=True))
-    answers = [best_move(force, list(moves)) for force, moves in questions]
+    answers = [best_move(*question) for question in questions]
     chosen = [None if answer is None else tuple(np.ravel(answer).tolist()) for answer in answers]
     wanted = [smallest_angle(*question) for question in questions]
     if all(answer is None for answer in chosen):

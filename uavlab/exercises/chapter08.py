@@ -176,7 +176,7 @@ FATALITY_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
 def exercise_3(answer: Callable[[np.ndarray, np.ndarray, float, float], float]) -> str:
     """08.3: expected deaths on a route over a risk map."""
     missions = [random_mission(seed) for seed in range(6)]
-    given = [answer(rate.copy(), voxels.copy(), cell, speed) for rate, voxels, cell, speed in missions]
+    given = [answer(*mission) for mission in missions]
     if same(given, [expected_deaths(*mission) for mission in missions], relative=1e-6):
         return ""
     if hint := recognised(given, ROUTE_MISTAKES, missions, same):

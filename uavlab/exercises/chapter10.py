@@ -29,7 +29,7 @@ def exercise_1(odds: Odds) -> str:
         (rng.uniform(0.1, 15, n), 1 / rng.uniform(2, 30, n), rng.uniform(0.5, 4), rng.uniform(0.5, 4))
         for n in (2, 3, 5, 8, 17)
     ]
-    answers = [odds(tau.copy(), eta.copy(), alpha, beta) for tau, eta, alpha, beta in usual]
+    answers = [odds(*case) for case in usual]
     if any(np.shape(answer) != case[0].shape for answer, case in zip(answers, usual, strict=True)):
         return f"For two neighbours the answer is two probabilities; yours has the shape {np.shape(answers[0])}."
     if not each_alike(answers, [right_odds(*case) for case in usual]):
@@ -117,7 +117,7 @@ def exercise_2(update: Update) -> str:
     """10.2: the pheromone after a generation, with evaporation, deposits and limits."""
     case = (np.array([10.0, 10.0, 10.0, 10.0]), [[0, 1], [0, 2]], [20.0, 50.0], 0.8, 100.0, 0.0, 15.0)
     cases = (case, *UPDATES)
-    answers = [given(update, one) for one in cases]
+    answers = [update(*one) for one in cases]
     same = partial(each_alike, same=np.allclose)
     if same(answers, [updated(*one) for one in cases]):
         return ""
@@ -126,12 +126,6 @@ def exercise_2(update: Update) -> str:
         f"that bind: you get {np.round(np.asarray(answers[0], dtype=float), 3)}. Node 3 was walked by nobody: what is "
         "left of its scent? And what comes on top at node 0?"
     )
-
-
-def given(update: Update, case: tuple) -> npt.ArrayLike:
-    """The answer to a case, on a copy of its pheromone."""
-    tau, ways, *rest = case
-    return update(tau.copy(), [list(way) for way in ways], *rest)
 
 
 def updated(

@@ -33,13 +33,13 @@ FLOWN = [
 @asks_for(numbers((3,), "the acceleration, a vector of three numbers"))
 def exercise_1(acceleration: Acceleration) -> str:
     """13.1: thrust, drag of the relative wind and weight."""
-    answers = [acceleration(f.copy(), w.copy(), v.copy(), m, a) for f, w, v, m, a in FLOWN]
+    answers = [acceleration(*case) for case in FLOWN]
     if each_alike(answers, [right_acceleration(*case) for case in FLOWN]):
         return ""
     if hint := recognised(answers, ACCELERATIONS, FLOWN, each_alike):
         return hint
     still = FLOWN[0][2]
-    alone = np.asarray(acceleration(np.zeros(3), still, still.copy(), 1.0, 0.06))
+    alone = np.asarray(acceleration(np.zeros(3), still, still, 1.0, 0.06))
     if not np.allclose(alone, -DOWN):
         return "Begin with what is simplest: no thrust, and air that moves along with the UAV. What is left of Eq. 2?"
     return "Without thrust and drag it is right. Which way does the air stream past, and how long is that vector?"

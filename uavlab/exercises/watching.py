@@ -21,8 +21,6 @@ from typing import Any
 
 import numpy as np
 
-from uavlab import compiled
-
 SECONDS = 5.0
 """That one call of an answer may take."""
 LONGEST = 160
@@ -118,6 +116,8 @@ def shown(arguments: tuple) -> str:
 @contextmanager
 def compile_clock() -> Iterator[Callable[[], float]]:
     """Within this, a function that says for how many seconds numba has compiled."""
+    from uavlab import compiled  # not before the first check: numba is slow to import
+
     if compiled.numba is None:
         yield lambda: 0.0
         return

@@ -138,7 +138,7 @@ def hazard_astar(
     uav_diameter : float
         Of the body [m]: nothing on the route is nearer to an obstacle than half of it.
     any_angle : bool
-        Join by straight lines what that makes no dearer, see `shortcut`.
+        Join by straight lines what that makes no more expensive, see `shortcut`.
     min_height, max_height : float
         As for `astar` [m].
     mean_offset, speed, natural_frequency, crash_price

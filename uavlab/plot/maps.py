@@ -41,6 +41,7 @@ from uavlab.plot.style import (
     plain,
     titled,
     with_gaps,
+    within,
 )
 from uavlab.risk import RiskMap
 
@@ -282,11 +283,11 @@ def field(
     axes.quiver(*points[..., :2].T, *direction[..., :2].T, pivot="mid", angles="xy", scale_units="xy",
                 scale=1.2 / spacing, width=0.005, edgecolor="white", linewidth=0.5)  # fmt: skip
     draw_zones(axes, city, height)
-    x, y, _ = np.asarray(goal, dtype=float)
-    if not planned and west <= x <= east and south <= y <= north:
+    end, window = np.asarray(goal, dtype=float), (west, east, south, north)
+    if not planned and within(end, window):
         look = SIGNS["goal"] | {"markersize": 9, "markeredgecolor": "white", "linestyle": ""}
-        axes.plot(x, y, color=BLACK, label="goal", zorder=3, **look)
-    draw_routes(axes, planned, colors, (west, east, south, north))
+        axes.plot(*end[:2], color=BLACK, label="goal", zorder=3, **look)
+    draw_routes(axes, planned, colors, window)
     axes.set(xlim=(west, east), ylim=(south, north))
     axes.set_title(title_of(city, height, "buildings black"))
     return finished(figure)
