@@ -15,7 +15,7 @@ from pathlib import Path
 
 import jupytext
 import nbformat
-from exported import export
+from exported import FOLDED, export
 from nbclient import NotebookClient
 from nbformat import NotebookNode
 
@@ -24,6 +24,7 @@ from uavlab.plot.pictures import quantised
 HERE = Path(__file__).resolve().parent
 SOURCES = HERE / "src"
 SOLUTION = re.compile(r"^([ \t]*)### BEGIN SOLUTION.*?### END SOLUTION[ \t]*$", re.DOTALL | re.MULTILINE)
+ANSWER = re.compile(r"^(\w+) = ", re.MULTILINE)
 SECONDS_PER_CELL = 300
 
 
@@ -139,10 +140,18 @@ def stripped(notebook: NotebookNode) -> NotebookNode:
     )
     for number, cell in enumerate(notebook.cells):
         cell.id = f"cell-{number:02d}"
-        cell.metadata = nbformat.from_dict({"tags": tags(cell)} if tags(cell) else {})
+        cell.metadata = metadata_of(cell)
         if cell.cell_type == "code":
             cell.outputs = [output for output in map(kept, cell.outputs) if output is not None]
     return notebook
+
+
+def metadata_of(cell: NotebookNode) -> NotebookNode:
+    """A cell's tags; code that only draws or checks is collapsed in JupyterLab."""
+    metadata: dict[str, object] = {"tags": tags(cell)} if tags(cell) else {}
+    if any(tag in FOLDED for tag in tags(cell)):
+        metadata["jupyter"] = {"source_hidden": True}
+    return nbformat.from_dict(metadata)
 
 
 def kept(output: NotebookNode) -> NotebookNode | None:
@@ -178,8 +187,19 @@ def exercise(source: Path) -> NotebookNode:
     notebook.cells = [cell for cell in notebook.cells if "solution" not in tags(cell)]
     for cell in notebook.cells:
         if cell.cell_type == "code":
-            cell.source = SOLUTION.sub(r"\1# your answer\n\1raise NotImplementedError", cell.source)
+            cell.source = SOLUTION.sub(blank, cell.source)
     return notebook
+
+
+def blank(solution: re.Match) -> str:
+    """What stands in the place of a solution: a function that isn't written yet, or the dots of a value.
+
+    A value is the last name that the solution sets.
+    """
+    indent = solution[1]
+    if indent:
+        return f"{indent}# your answer\n{indent}raise NotImplementedError"
+    return f"{ANSWER.findall(solution[0])[-1]} = ...  # your answer"
 
 
 def tags(cell: NotebookNode) -> list[str]:

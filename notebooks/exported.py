@@ -22,9 +22,18 @@ TEMPLATE = """{% extends 'lab/index.html.j2' %}
 {% block html_head_js_mermaidjs %}{% endblock %}
 {% block html_head_js_mathjax %}{% endblock %}
 {% block jupyter_widgets %}{% endblock %}
-{% block html_head_css %}<style>{{ equations.style }}</style>{% endblock %}
+{% block html_head_css %}<style>{{ equations.style }}{{ style }}</style>{% endblock %}
+{% block input_group %}{% set folded = cell.metadata.tags | folded %}
+{% if folded %}<details class="uavlab-folded"><summary>{{ folded }}</summary>{{ super() }}</details>
+{% else %}{{ super() }}{% endif %}{% endblock %}
 {% block data_latex scoped %}{{ output.data['text/latex'] | markdown2html }}{% endblock %}
 {% block body_footer %}{{ equations.letters() }}{{ super() }}{% endblock %}
+"""
+FOLDED = {"check": "Code that checks", "figure": "Code of the figure"}
+"""Tags of cells whose code is out of the reader's way, and what stands in its place."""
+STYLE = """
+.uavlab-folded > summary { margin-left: 64px; color: var(--jp-ui-font-color2); cursor: pointer; font-size: 12px }
+.jp-MarkdownOutput blockquote { border-left: 4px solid #0072b2; background: #0072b210; padding: 6px 12px }
 """
 EQUATION = re.compile(r"<uavlab-(inline|display)>(.*?)</uavlab-\1>", re.DOTALL)
 
@@ -59,7 +68,8 @@ class Exporter(HTMLExporter):
     def __init__(self) -> None:
         self.equations = Equations()
         super().__init__(raw_template=TEMPLATE, template_name="lab")
-        self.environment.globals["equations"] = self.equations
+        self.environment.globals |= {"equations": self.equations, "style": STYLE}
+        self.environment.filters["folded"] = lambda tags: next((FOLDED[tag] for tag in tags or () if tag in FOLDED), "")
 
     @pass_context
     def markdown2html(self, context: Context, source: str) -> str:

@@ -39,8 +39,7 @@ COLORS = {"safe curve": plot.SKY, "shortest route": plot.BLUE, "safest of the sh
 # A light breeze from the south-west and a little rain, on a quadrotor of 1.5 kg that carries 250 g. Gusts are stronger
 # than the mean wind, and their force grows with the square of the speed. The rain hardly counts.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 uav = LIGHT_QUADROTOR.loaded(0.25)
 weather = Weather(12, 80, 985, forecast_wind=3, wind_from_deg=240, rain_mm_per_h=2, radiation=150)
 gust = weather.reference_wind.gust * weather.wind_direction  # where the air moves to, east and north
@@ -59,8 +58,7 @@ print(f"left against them: {uav.horizontal_reserve():.1f} N of {uav.thrust:.0f} 
 # hourly weather. What XGBoost predicts for today goes into the paper's Eq. 7: the distance to keep is the offset plus
 # half the body.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 year = make_dataset("greensboro", rng=1, uav=uav)
 predictor = OffsetPredictor().fit(year.features[year.train], year.offsets[year.train])
 offset = predictor.predict_offset(weather)[0]
@@ -77,8 +75,7 @@ assert safe_distance == 3.5  # REPARE Table 4: light load, mild disturbance
 # REPARE tests its planner in a city of five buildings (its Table 1). A planner sees it as a million cubes of one metre,
 # each free or occupied.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 city = table1_city()
 print(f"{city.occupied.size:,} voxels, {city.occupied.sum():,} of them occupied ({city.occupied.mean():.1%})")
 for building in city.buildings:
@@ -96,8 +93,7 @@ scene.show(city)
 # A* (read: A star) finds the shortest route from voxel to voxel. Start and goal are in metres: x to the east, y to the
 # north, z up. The route begins and ends in the centres of their voxels, at most half a metre off on each axis.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 start, goal = (90, 18, 30), (20, 75, 75)
 shortest = astar(city, start, goal)
 print(f"{shortest.length:.1f} m, {shortest.info['expanded']:,} voxels looked at")
@@ -116,8 +112,7 @@ plot.profile(city, shortest)
 # The weather asks for 3.5 m. Voxels that are nearer to a wall are now closed. And since nothing forces a UAV to turn by
 # 45° or 90° from voxel to voxel, `shortcut` then joins by straight lines what can see each other.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 safe = astar(city, start, goal, min_clearance=safe_distance)
 straight = shortcut(safe, city)
 for route in (shortest, safe, straight):
@@ -146,8 +141,7 @@ scene.show(city, straight, shortest, safe_distance=safe_distance)
 # them, and what was clear may touch. `smooth` looks, and where it would, it pulls the curve back to the straight lines.
 # `feasibility` then holds the curve against what this UAV can do, and says where it comes nearest to each limit.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 curve = smooth(straight, city, uav)
 wind = Wind.from_weather(weather)
 report = feasibility(curve, city, uav, wind=wind.mean)
@@ -165,8 +159,7 @@ assert report.feasible
 # pulls along the curve by what GPS says. We fly the shortest route, too, and the safe curve once more with offsets as
 # large as its distance was chosen for: one metre is a third of the three that were to be survived.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 flown = {
     "shortest route, this wind": monte_carlo(shortest, city, uav, wind, rng=1, flights=500),
     "safe curve, this wind": monte_carlo(curve, city, uav, wind, rng=1, flights=500),
@@ -197,8 +190,7 @@ scene.show(city, flights={"safe curve": arrival, "shortest route": crash}, safe_
 # campus, from the people there, from what shelters them, and from how hard a wreck comes down. The shortest route
 # crosses two squares full of people. Which route has the least risk, if it may be 8 % longer?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 campus = reference_campus()
 across = least_risk(campus, *CAMPUS_FLIGHT, length_weight=1)  # a metre outweighs all risk
 around = least_risk(campus, *CAMPUS_FLIGHT, max_length=1.08 * across.length)  # only the risk counts
@@ -221,8 +213,7 @@ scene.show(campus.city, around, {"safest of the shortest": across}, risk=campus,
 # gap between two buildings? And when the goal itself is too near to a wall? A question that has no answer is refused,
 # with what would do instead:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 try:
     astar(city, start=(65, 20, 30), goal=goal)
 except ValueError as error:
@@ -251,6 +242,5 @@ except ValueError as error:
 # right, and if not, what to think about. The whole way as one page, for any city and weather: `python -m uavlab` in a
 # terminal. The route of this notebook as a file for other programs: `straight.to_csv("route.csv")`.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print(np.round(straight.points, 1))

@@ -40,8 +40,7 @@ RED, GREEN = plot.ORANGE, plot.GREEN
 # REPARE speaks of a civil light quadrotor and gives no figures for it. Ours has figures that are usual for the class,
 # and with them the safe distances of REPARE Table 4 come out ([notebook 03](03_predicting_the_disturbance.ipynb)):
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 uav = LIGHT_QUADROTOR
 print(f"mass {uav.mass} kg, weight {uav.weight:.1f} N, thrust of all rotors at most {uav.thrust} N")
 print(f"drag area C·S {uav.drag_area} m², area under the rain {uav.rain_area} m², top speed {uav.top_speed} m/s")
@@ -74,8 +73,7 @@ plot.lines(
     points={"an hour at Greensboro": np.column_stack([year.temperature_c, density])[::5]},
 )
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 thin, thick = density.min(), density.max()
 wet = air_density(30, 100, 1013.25) / air_density(30, 0, 1013.25)
 print(f"Greensboro: {thin:.2f} to {thick:.2f} kg/m³, a factor of {thick / thin:.2f}")
@@ -101,8 +99,7 @@ assert round(warmth, 2) == 1.20
 #
 # A large drop falls with 9 m/s. A cloudburst of 100 mm/h on 0.1 m², with drops that stick:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 from uavlab.weather import rain_force
 
 cloudburst = rain_force(100, uav.rain_area)
@@ -115,8 +112,7 @@ assert np.isclose(cloudburst, 0.025)
 # missing on the right, so the result is a pressure, in pascals. And $1 - \eta$ runs the wrong way: drops that lose all
 # they have ($\eta = 1$) should push, and the formula gives nothing.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print("drops            right      printed")
 for e, what in ((0.0, "stick"), (0.2, "splash"), (1.0, "bounce back")):
     right = rain_force(100, uav.rain_area, restitution=e)
@@ -128,8 +124,7 @@ assert rain_force(100, uav.rain_area, as_printed=True) == 0
 # REPARE's second note under Table 3 grounds the UAV when heavy rain presses harder than the largest load that it can
 # carry. How hard would it have to rain for that, or only for a load of 250 g?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for payload in (0.25, 0.6, 1.0):
     rate = payload * GRAVITY / rain_force(1, uav.rain_area)
     print(f"as heavy as a load of {payload:.2f} kg: {rate / 1000:5.1f} metres of rain an hour")
@@ -161,8 +156,7 @@ plot.lines(
 #
 # The paper leaves the rain outside of the bracket. In newtons it hardly matters, as rain itself hardly does:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 from uavlab.weather import lift_margin
 
 for payload in (0.0, 0.25, 0.6, 1.0, 1.1):
@@ -195,8 +189,7 @@ assert lift_margin(uav.loaded(heaviest - 1e-9)) > 0 > lift_margin(uav.loaded(hea
 # $\mathbf W$ less velocity over ground $\mathbf v$. REPARE prints $\frac12 C \rho S V_d$: once, and with the speed over
 # ground. With $C S = 0.05$ m² and $\rho = 1.2$ kg/m³:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 from uavlab.weather import wind_drag
 
 print("wind   flies east     right   printed")
@@ -233,8 +226,7 @@ plot.lines(speeds, drag, "speed through still air [m/s]", "force [N]", points=ma
 # $$ V_\text{res} = \max(V_{\mu F}, V_{\mu S}), \qquad
 #    V_\text{gust} = \max(V_{\text{Max}F},\ g\, V_\text{res}). \tag{5} $$
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for forecast, measured, strongest in ((6, 5, 0), (6, 8, 0), (6, 5, 12)):
     mean, gust = reference_wind(forecast, measured, strongest)
     force = {speed: wind_drag((speed, 0), (0, 0), uav.drag_area)[0] for speed in (mean, gust)}
@@ -249,8 +241,7 @@ assert np.isclose((10.5 / 6) ** 2, 3.0625)
 # doesn't say how long that is. It matters. Here is a wind of 6 m/s that rises and falls by 3 m/s every 40 s, measured
 # once a second and averaged over the last $t_w$ by `mean_wind`:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 seconds = np.arange(300.0)
 speeds = 6 + 3 * np.sin(2 * np.pi * seconds / 40)
 for averaging_time in (1, 5, 20, 60, 300):
@@ -263,8 +254,7 @@ assert abs(mean_wind(speeds, 1.0, 20) - 6) > 1 > abs(mean_wind(speeds, 1.0, 300)
 # A whole record, from a station or from the internet, is read with its units from a CSV file. Whatever it lacks is
 # said; a row of it is a `Weather`:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 rows = "time,temp [°F],pressure [hPa],wind [km/h],gust [km/h],wind direction [°]\n2026-03-01T13:00,50,1013,18,36,270\n"
 with tempfile.TemporaryDirectory() as folder:
     file = Path(folder) / "station.csv"
@@ -312,8 +302,7 @@ figure = plot.lines(angles, left, side, "reachable ground speed [m/s]", limits=c
 figure.axes[0].set_xticks(range(0, 181, 45))
 figure
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print("wind of 9 m/s      right   speeds added up")
 sides = {"from behind": (9, 0), "from the side": (0, 9), "from ahead": (-9, 0)}
 reached = {side: float(reachable_ground_speed(uav.top_speed, wind, course)) for side, wind in sides.items()}
@@ -339,8 +328,7 @@ assert np.allclose(list(reached.values()), (27.0, np.sqrt(18**2 - 9**2), 9.0))
 # Near the ground $\sigma_w$ is a tenth of the wind at 6 m (20 feet). Horizontal gusts are stronger than vertical
 # ones, and longer. Here the UAV hovers 30 m above the ground in a wind of 8 m/s, which carries the eddies past it:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 from uavlab.weather import dryden_gusts, dryden_parameters, dryden_spectrum
 
 hover = {"air_speed": 8.0, "altitude": 30.0, "wind_at_6m": 6.0}
@@ -376,8 +364,7 @@ for axes, name, found, wanted in zip(panels, ("along", "across", "vertical"), es
     plot.lines(omega, spectra, "frequency [rad/s]", "density [m²/s² per rad/s]", log="xy", title=name, axes=axes)
 figure
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 band = (omega > 0.2) & (omega < 10)
 ratio = (estimate[1:][band] / (2 * np.pi) / model[band]).mean(axis=0)
 strength = long_run.std(axis=0) / deviations
@@ -391,8 +378,7 @@ assert np.allclose(strength, 1, atol=0.05)
 # back into the last bit of the curve. And the gust factor? The strongest of ten minutes over the mean wind, two
 # hundred times:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 strongest = np.array([8.0 + dryden_gusts(600, 0.1, **hover, rng=seed)[:, 0].max() for seed in range(200)])
 factor = strongest / 8.0
 low, high = np.quantile(factor, [0.05, 0.95])
@@ -419,8 +405,7 @@ assert high < 1.5
 #
 # $$ W \le \min\Bigl(\frac{V_\text{gust}}{g},\ \min(V_\text{gust}, V_\text{uav}) - V_d\Bigr). \tag{10} $$
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 from uavlab.weather import grounded_by, mean_wind_limit, wind_limit
 
 print("load      reserve   holds gusts   mean wind at 5 m/s over ground")
@@ -460,8 +445,7 @@ labels = "load [kg]", "rain [mm/h]", "mean wind in which it may fly [m/s]"
 grounded = {"grounded by its load": allowed == 0}
 plot.heat_map(payloads, rains, shown, *labels, contours=np.arange(10, 13, 0.5), hatched=grounded)
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 heavy = uav.loaded(1.0)
 calm, wet = (float(wind_limit(heavy, rain_force(rate, uav.rain_area))) for rate in (0, 300))
 print(f"1 kg: holds gusts of {calm:.2f} m/s when dry, {wet:.2f} m/s in 300 mm/h")
@@ -505,8 +489,7 @@ plot.sliders(
 # up there is more wind; with the usual power law, $(60/10)^{1/7} = 1.29$ times as much at 60 m. Out of 8 760 hours:
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def hours_grounded(payload, ground_speed, height=10.0):
     """Hours of Greensboro's year in which the UAV can't fly with this load and this speed over ground."""
     limit = mean_wind_limit(uav.loaded(payload), ground_speed=ground_speed, air_density=density)
@@ -545,8 +528,7 @@ figure
 #
 # ## What the paper says, what we find
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 drags = [wind_drag((0, 0), (10, 0), 0.05, air_density=1.2, as_printed=form)[0] for form in (False, True)]
 print(f"Eq. 1: {rain_force(100, 0.1):.3f} N in 100 mm/h; printed {rain_force(100, 0.1, as_printed=True):.3f} Pa")
 print(f"Eq. 2: rain outside of the bracket: {0.1 * cloudburst:.4f} N too hopeful")

@@ -40,8 +40,7 @@ BLACK, BLUE, GREEN, ORANGE, PINK, YELLOW = plot.BLACK, plot.BLUE, plot.GREEN, pl
 #
 # $$ P_1(k) = \int_{\mu-k\sigma}^{\mu+k\sigma} n(x)\,dx = \operatorname{erf}\frac{k}{\sqrt 2}. \tag{2} $$
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for k in (1, 2, 3, 4):
     print(f"within {k}σ on one axis: {offsets.coverage(k, dimensions=1):9.4%}")
 assert math.isclose(offsets.coverage(3, 1), math.erf(3 / math.sqrt(2)), rel_tol=1e-12)
@@ -76,8 +75,7 @@ figure
 # with $k = 3$ in the paper. For a body of $D_\text{uav} = 1$ m, which $\sigma$ gives the three distances of its
 # Table 4?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 levels = {"light load, mild wind": 1.0, "heavy load, mild wind": 4 / 3, "light load, heavy wind": 5 / 3}
 for name, sigma in levels.items():
     distance = offsets.minimum_safe_distance(3 * sigma, uav_diameter=1.0)
@@ -104,8 +102,7 @@ plot.lines(x, densities, "offset x on one axis [m]", "density n(x) [1/m]", point
 # is judged by, so one round isn't enough: remove, compute mean and $\sigma$ anew, and go on until nothing is removed.
 # 200 good offsets with $\sigma = 0.8$ m and 8 wrong ones:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 rng = np.random.default_rng(2)
 wrong = np.array([4.5, -5.0, 6.0, 9.0, -14.0, 25.0, 40.0, -70.0])
 samples = np.concatenate([OffsetModel(0.2, 0.8).sample(200, rng), wrong])
@@ -145,8 +142,7 @@ figure
 #
 # and no sample of $n$ can do better. That is below 3 up to $n = 10$.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for count in (5, 10, 11):
     spike = np.zeros(count)
     spike[-1] = 1000.0
@@ -173,8 +169,7 @@ except ValueError as error:
 #
 # `offsets.coverage` is the first, `offsets.pauta_radius` the second. A million drawn offsets agree:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for dimensions in (1, 2, 3):
     exact, radius = offsets.coverage(3, dimensions), offsets.pauta_radius(dimensions)
     drawn = np.linalg.norm(np.random.default_rng(dimensions).standard_normal((1_000_000, dimensions)), axis=1)
@@ -239,8 +234,7 @@ plot.sliders(
 # heat map, marks the safety domain with a red circle, and says that it meets the Pauta criterion. With the $3\sigma$ of
 # Figs 2 and 3 as its radius it doesn't: that is Eq. 5.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 calm, joint = JointOffset((0, 0), (0.2, 0.2)), JointOffset((0, 0), (1, 1))
 print(f"highest density for σ = 0.2 m: {calm.density((0, 0)):.2f} per m²")
 pushes = joint.sample(1_000_000, 18)
@@ -271,8 +265,7 @@ plot.heat_map(grid, grid, joint.density(np.stack(np.meshgrid(grid, grid, indexin
 # Its shape says in which direction room is needed. If the direction of the next wall isn't known, what counts is the
 # circle around the *route* that holds the share.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 tilted = JointOffset(mean=(0.6, -0.3), sigma=(1.0, 0.5), correlation=-0.6)
 pushes = tilted.sample(200_000, 17)
 print(
@@ -308,8 +301,7 @@ plot.diagram("horizontal offset [m]", "vertical offset [m]", paths=outlines, poi
 #
 # Who records magnitudes and applies "mean plus three standard deviations" to them gets this:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 law = offsets.magnitude(sigma=1.0)
 rule = law.mean() + 3 * law.std()
 print(
@@ -352,8 +344,7 @@ plot.lines(r, densities, "distance from the route in the plan [σ]", "density [1
 # $$ \operatorname{E}Q = 1 + I^2, \qquad \operatorname{Var} Q = 4I^2 + 2I^4, \qquad
 # \text{skewness} = \frac{24 I^4 + 8 I^6}{(4I^2 + 2I^4)^{3/2}} \approx 3I. \tag{10} $$
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 gaussian = OffsetModel(0.0, 1.0)
 for intensity in (0.1, 0.2, 0.3, 0.4):
     city = SkewedOffset(0.0, 1.0, intensity)
@@ -423,8 +414,7 @@ plot.lines(time, flights, "time [s]", "offset towards the wall [σ]", limits={"3
 # $\sigma = 1$ m, so $u = 3.5 - 0.5 = 3\sigma$, and $\omega_n = 1$ rad/s. 160 000 such flights in eight seeds:
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def collided(step=0.02, rough=False):
     """Share of flights that come nearer than the body allows: its mean over seeds, and half its 95 % interval."""
     flights = [offsets.offset_paths(1.0, 8.0, seed, count=20_000, step=step, rough=rough)[1] for seed in range(8)]
@@ -447,8 +437,7 @@ assert predicted > 11 * gaussian.beyond(3.0)
 # rough that it crosses a level infinitely often. Taken for the *offset*, with the same $\sigma$ and correlation time
 # ($2/\omega_n$), it collides two to three times as often, and the finer one looks, the oftener:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for step in (0.1, 0.05, 0.02):
     rates = [collided(step, rough)[0] for rough in (False, True)]
     print(f"step {step:.2f} s: second order {rates[0]:.1%}, Ornstein–Uhlenbeck {rates[1]:.1%}")
@@ -458,8 +447,7 @@ assert rates[1] > 2.5 * rates[0]
 # So the roughness of the model decides as much as its $\sigma$. A UAV has mass and can't jump: the second-order offset
 # is the physical one. How large must $k$ be so that not more than 0.27 % of whole *flights* touch the wall?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 radius = np.linspace(2.0, 7.0, 5001)
 durations = {"1 s": 1, "8 s": 8, "1 min": 60, "10 min": 600, "30 min": 1800}
 needed = {}
@@ -485,8 +473,7 @@ plot.lines(seconds, chances, "time beside the wall [s]", "chance to touch it [%]
 # One $\sigma$ of 1 m, one body of 1 m, and one share, 99.73 %: the distance of Eq. 3 depends on what the share is a
 # share of.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 reaches = {
     "REPARE: one axis, one moment": 3.0,
     "in the plane": offsets.pauta_radius(2),
@@ -518,8 +505,7 @@ plot.bars(keep, "D_min [m] for 99.73 %, σ = 1 m, body 1 m")
 #
 # $$ D_\text{min}(\mathbf x) = k\sigma + \tfrac12 D_\text{uav} + \max(0, -\boldsymbol\mu\cdot\mathbf n). \tag{14} $$
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 wind = np.array([1.0, 0.0])  # mean offset [m], to the east
 for side, normal in {"west": (-1, 0), "south": (0, -1), "east": (1, 0)}.items():
     widened = offsets.minimum_safe_distance(3.0, 1.0, mean_offset=wind, normal=normal)
@@ -545,8 +531,7 @@ plot.diagram("x, east [m]", "y, north [m]", paths=zones, areas={"building": corn
 # %% [markdown]
 # ## What the paper says, what we find
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print(f"Figs 2, 3: 3σ on one axis {offsets.coverage(3, 1):.2%}, in the plane {offsets.coverage(3, 2):.2%}, "
       f"in space {offsets.coverage(3, 3):.2%}")  # fmt: skip
 print(f"Fig. 18: 99.73 % needs {joint.circle():.3f}σ; 3σ is {1 - 3 / joint.circle():.1%} too small")

@@ -42,8 +42,7 @@ from uavlab.weather import greensboro_weather
 # The six features are temperature, humidity, pressure, wind speed, wind direction and solar radiation. A typical year
 # of Greensboro, North Carolina, has all of them, hour by hour:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 hours = greensboro_weather()
 print(f"{len(hours):,} hours, mean wind {hours.wind_speed.mean():.1f} m/s, highest {hours.wind_speed.max():.1f} m/s")
 print(f"calm in {(hours.wind_speed == 0).mean():.0%} of the hours")
@@ -99,8 +98,7 @@ figure
 # if "mild" and "heavy" are winds of 6 and 9 m/s with a gust factor of 1.75, and the loads are 250 g and 1 kg (the last
 # one only just):
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 table4 = []
 for load, wind in ((0.25, 6), (1.0, 6), (0.25, 9)):
     uav = LIGHT_QUADROTOR.loaded(load)
@@ -135,8 +133,7 @@ plot.lines(winds, medians, "wind at the station [m/s]", "offset ξ [m], median",
 # As in the paper: 7 330 samples, 5 864 to learn from and 1 466 to be tested on. Two of our settings: "paper", with
 # made-up weather, and "greensboro", with hours of the real record.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 tables = {name: make_dataset(name, 0) for name in ("paper", "greensboro")}
 for name, data in tables.items():
     shares = np.bincount(data.classes, minlength=7)[1:] / len(data.classes)
@@ -208,8 +205,7 @@ plot.intervals(scores, "score [%]", level="95 % (of single runs)", digits=1, x_r
 #
 # An accuracy on 1 466 samples is a count $k$ divided by 1 466. Which counts do the printed figures belong to?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for name, percent in printed.items():
     k = round(percent / 100 * 1466)
     print(f"{name:<14} {percent} % of 1466 = {percent * 14.66:8.3f};  {k}/1466 = {100 * k / 1466:.3f} %")
@@ -336,8 +332,7 @@ plot.intervals({"XGBoost, Greensboro": losses}, "accuracy lost when shuffled [pe
 #
 # $$ A^* = \frac1N \sum_i \max_k P(k \mid \text{weather}_i). \tag{7} $$
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 data = tables["paper"]
 limit = prediction.bayes_accuracy(data.log_median, data.noise)
 best = 1 + prediction.class_probabilities(data.log_median, data.noise).argmax(axis=1)
@@ -436,8 +431,7 @@ plot.lines(100 * curve[:, 0], {known: curve[:, 1]}, "class too low: unsafe fligh
 # `OffsetPredictor` is the model to take along: the log-offset regression with its residuals. We let it learn from all
 # hours of the record but the days around 19 March, write it to a file and read it again (XGBoost's own JSON):
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 tomorrow = hours.iloc[77 * 24 : 78 * 24]
 known = hours.drop(hours.index[75 * 24 : 80 * 24])
 offsets = prediction.simulate_offsets(known, LIGHT_QUADROTOR, 3)
@@ -500,8 +494,7 @@ assert "wind_speed = 25 is outside of 0 to" in str(caught[0].message)
 # %% [markdown]
 # ## What the paper says, what we find
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 within = {
     "GaussianNB within 2 points of 59.426 %": abs(100 * paper.accuracy["GaussianNB"] - 59.426) < 2,
     "XGBClassifier within 2 points of 72.852 %": abs(100 * paper.accuracy["XGBClassifier"] - 72.852) < 2,

@@ -84,8 +84,7 @@ scene.show(city)
 # question for a million points. Here it is by hand for the hip roof, with one point below the ridge and one at the
 # same height over the edge of the roof:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 hip_roof = city.buildings[1]
 faces = np.unique(hip_roof.hulls[0].equations.round(9), axis=0)  # the hull has triangles: two for a rectangle
 points = {"below the ridge": (22, 35, 62), "over the eaves": (12, 35, 62)}
@@ -112,8 +111,7 @@ assert hip_roof.contains(list(points.values())).tolist() == [True, False]
 # inside.
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def volume_of(building):
     """Volume of the pieces [m³]; where they overlap it counts twice."""
     return sum(ConvexHull(piece).volume for piece in building.pieces)
@@ -151,8 +149,7 @@ assert volume_of(filled) / notch_volume == pytest.approx(1.48, abs=0.005)
 #
 # REPARE's map has $c = 1$ m. Its five buildings by both rules:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 exact = {b.name: volume_of(b) for b in city.buildings} | {notch.name: notch_volume}
 counts = {rule: [] for rule in ("centres", "touched")}
 for building in city.buildings:
@@ -200,8 +197,7 @@ scene.show(City(coarse.occupied, coarse.cell, name="What the planner sees, voxel
 # right, from the back to the front, from the top down, which `as_printed=True` does; PSO-BAS (section 2) doesn't say.
 # Which order is taken doesn't matter as long as it can be undone.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 point = (90.2, 18.0, 30.7)
 i, j, k = (int(index) for index in city.cell_of(point))
 nx, ny, nz = city.shape
@@ -229,8 +225,7 @@ assert city.index_of(city.code_of((i, j, k), as_printed=True), as_printed=True).
 # The usual shortcut is the distance between the centres, which every image library has. It is wrong, and not by a
 # constant that one could subtract. Two free nodes, each exactly 3 m from the centre of the only occupied voxel:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 lonely = np.zeros((4, 4, 3), dtype=bool)
 lonely[0, 0, 0] = True
 for offset in ((3, 0, 0), (2, 2, 1)):
@@ -246,8 +241,7 @@ assert City(lonely).clearance[2, 2, 1] == pytest.approx(np.sqrt(1.5**2 + 1.5**2 
 # Straight ahead half a cell is lost; towards an edge or a corner it is up to half the diagonal of a voxel, 0.87 m. In
 # the whole city, with 3.5 m, the smallest safe distance of REPARE's Table 4, as an example:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 free = ~city.occupied
 between_centres = distance_transform_edt(free)
 too_far = (between_centres - city.clearance)[free]
@@ -302,8 +296,7 @@ plot.sliders(section_at, title="clearance", labels=labels, start={"height": 30},
 # with a body of 1 m exactly REPARE's Eq. 7: $D_{min} = \xi + D_{uav}/2$ with offsets $\xi$ of 3, 4 and 5 m.
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def accepted_by_ring(radius, thickness):
     """Smallest clearance [m] that a ring calls free of risk, in front of a wall this thick [m]."""
     wall = City(np.pad(np.ones((thickness, 41, 41), dtype=bool), ((0, 20), (0, 0), (0, 0))))
@@ -321,8 +314,7 @@ for radius, table4 in ((3, 3.5), (4, 4.5), (5, 5.5)):
 # node, by either test; above 1 it is risky.) Before this wall, 10 m thick, ring and ball agree. But the ring looks $r$
 # cells away and nowhere else: it looks *through* a wall that is thinner than $r$ cells, once the UAV is near enough.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print("thickness of the wall    2 m    3 m    4 m    5 m    6 m")
 for radius in (3, 4, 5):
     accepted = [accepted_by_ring(radius, thickness) for thickness in range(2, 7)]
@@ -335,8 +327,7 @@ for radius in (3, 4, 5):
 # the ball that the ring misses, what it adds, and the smallest clearance of a node that the ring calls free of
 # risk.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 ring_zones, missed, added, kept = {}, {}, {}, {}
 print("radius  ball     ring misses  ring adds  clearance that the ring accepts")
 for r in range(1, 9):
@@ -373,8 +364,7 @@ figure
 # definition, so say which one you use. In this course it is always the exact clearance, and `penalty_zone` takes
 # the ball unless asked for the ring.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for r in (2, 3, 4, 5, 6):
     ball, ring = (between_centres <= r) & free, ring_zones[r]
     misses, adds = (ball & ~ring).sum() / ball.sum(), (ring & ~ball).sum() / ball.sum()
@@ -403,8 +393,7 @@ for cell in cells:
     models[cell].clearance  # computed when first asked for
     print(f"{cell:g} m: grid {built - began:6.3f} s, clearance {time.perf_counter() - built:6.3f} s")
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for cell, model in models.items():
     error = model.occupied.sum() * cell**3 / exact_volume - 1
     memory = (model.occupied.nbytes + model.clearance.nbytes) / 1e6
@@ -416,8 +405,7 @@ for cell, model in models.items():
 # wall counts as inside, and so a house gains up to half a cell on either side: the hip roof is 26 × 42 m large
 # instead of 25 × 40 m. Shift the grid by a random part of a cell and the accident is gone. Here are both rules:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 rng, spread, excess = np.random.default_rng(4), {}, {}
 for cell in (4.0, 2.0, 1.0):
     shifts = rng.uniform(0, cell, (20, 3))
@@ -492,8 +480,7 @@ for cell in (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0):
             gone += not solid[x > 26].any()
         shares[cell] = closed / 200, gone / 200
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for cell in (0.5, 1.0, 2.0, 4.0):
     shown = (f"{rule}: alley closed {shares[cell][0]:>4.0%}, wall lost {shares[cell][1]:>4.0%}"
              for rule, shares in measured.items())  # fmt: skip
@@ -525,8 +512,7 @@ figure
 # Here is what it does to a route. Two blocks as high as the map, 8 m, leave an alley of 1.5 m (at $x = 19.2$ to $20.7$
 # m); north of it stands a free wall 0.8 m thick. A\* looks for a way from south to north.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 blocks = [
     slab(0, 19.2, 5.5, 14.5, name="west"),
     slab(20.7, 40, 5.5, 14.5, name="east"),
@@ -568,8 +554,7 @@ figure
 # touch a free voxel holds no part of any building. A leg that stays in free voxels therefore meets no wall. We check 50
 # routes between Table 1's buildings, ten on each of five random grids, every 0.1 m:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 cut = {}
 for cell in (4.0, 2.0, 1.0):
     for rule in ("centres", "touched"):
@@ -598,8 +583,7 @@ assert [cut["touched", cell] for cell in (4.0, 2.0, 1.0)] == [0, 0, 0]
 # (`read_terrain`: ESRI ASCII grid, GeoTIFF). Here two houses of 12 m have a hill of 30 m between them, given as a
 # raster with pixels of 5 m:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 x, y = np.meshgrid(np.arange(-17.5, 140, 5), np.arange(77.5, -20, -5))  # centres of pixels, the first row in the north
 raster = 30 * np.exp(-((x - 60) ** 2 + 0.3 * (y - 30) ** 2) / (2 * 18**2))
 hill = Terrain.from_raster(raster, bounds=(-20, -20, 140, 80))  # west, south, east, north
@@ -618,8 +602,7 @@ print(f"a point at z = 35 m over the top is {valley.height_above_ground((60, 30,
 # *Predict first:* we plan from house to house, 8 m high, on both maps (from the centre of a voxel to that of another,
 # so at 9 m). What does the first route do?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 start, goal = (20, 30, 8), (100, 30, 8)
 blind = shortcut(astar(flat, start, goal), flat)
 seeing = shortcut(astar(valley, start, goal), valley)
@@ -697,8 +680,7 @@ print(json.dumps(blocks)[:220], "…")
 # reader projects the degrees onto the plane that touches the Earth in the south-west corner of the buildings. There it
 # puts $x = y = 0$, with $x$ to the true east and $y$ to the true north.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "blocks.geojson"
     path.write_text(json.dumps(blocks))
@@ -727,8 +709,7 @@ plot.section(town, 11.0, label="clearance [m]; yellow: the ground, 11 m below, i
 # The courtyards are there. A flight at 11 m from one to another has to climb over the roofs. A\* with 3.5 m of
 # clearance, then the straight lines of `shortcut` ([05 A*](05_astar.ipynb) explains both):
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 on_grid = astar(town, (70, 164, 11), (258, 164, 11), min_clearance=3.5)
 straight = shortcut(on_grid, town, min_clearance=3.5)
 for route in (on_grid, straight):
@@ -745,8 +726,7 @@ scene.show(town, straight, on_grid, safe_distance=3.5)
 #
 # A UAV flies by longitude and latitude. The town knows where its origin lies, so it can tell for every waypoint:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 on_earth = town.to_geographic(straight.points)
 for point, (longitude, latitude, height) in zip(straight.points, on_earth, strict=True):
     print(f"({', '.join(f'{part:5.1f}' for part in point)}) m: {longitude:.6f}°, {latitude:.6f}°, {height:.1f} m")
@@ -778,8 +758,7 @@ def square(west, south, size=20):
     return [(west, south), (west + size, south), (west + size, south + size), (west, south + size)]
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 features = [
     feature("feet", square(0, 0), height="40 ft"),
     feature("comma", square(40, 0), height="12,5 m"),
@@ -799,8 +778,7 @@ for one in features:
 #
 # *Predict first:* how many of the eight become obstacles? What is assumed, and what would you assume?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 folder = tempfile.TemporaryDirectory()
 dirty = Path(folder.name) / "dirty.geojson"
 dirty.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
@@ -813,8 +791,7 @@ except ValueError as error:
 # The reader doesn't invent a height: an obstacle whose height is wrong is worse than a question. You answer it with
 # `default_height`. Take it high: too high a guess costs a detour, too low a guess costs the UAV.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always")
     quarter = read_geojson(dirty, cell=2.0, default_height=15.0)
@@ -843,8 +820,7 @@ assert volume_of(bow_tie) / 9 == pytest.approx(200, rel=1e-3)
 # outline with a lower and an upper limit above ground. Planners stay out of it. It is no obstacle: nothing can hit it,
 # and clearance doesn't count it. We close the lake up to 60 m:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 south_west = quarter.from_geographic([*Place(*CENTRE).longitude_latitude((80, 50)), 0.0])[:2]
 lake = NoFlyZone(square(*south_west, 30), upper=60.0, name="lake")
 closed = replace(quarter, no_fly=[lake])
@@ -883,8 +859,7 @@ model = {
     "vertices": corners,
 }
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "house.city.json"
     path.write_text(json.dumps(model))
@@ -903,8 +878,7 @@ scene.show(house, height=360)
 # A voxel map holds no buildings at all, only the blocked voxels, one per line and counted from 0. Table 1's city at
 # 4 m, written and read back:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 lines = ["voxel 25 25 25", *(f"{i} {j} {k}" for i, j, k in np.argwhere(coarse.occupied))]
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "table1.3dmap"
@@ -954,8 +928,7 @@ None if my_city is None else scene.show(my_city)
 # The paper prints no count of voxels and doesn't say from where a distance is measured. Our reading, from the
 # centre of the UAV to the surface, is the one in which REPARE's Table 4, its Eq. 7 and the ring agree.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 radii = (3, 4, 5)
 print("ring radius  Table 4  zone missed  smallest clearance accepted")
 for r, table4 in zip(radii, (3.5, 4.5, 5.5), strict=True):

@@ -66,8 +66,7 @@ assert len(lengths) == 26
 # %% [markdown]
 # One occupied voxel beside the node forbids far more than the move into it:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 cube = {(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1)}
 legal = {
     place: len(list(neighbours(cube - {voxel}, (0, 0, 0))))
@@ -178,8 +177,7 @@ print(f"the library is {plain_seconds / library_seconds:,.0f} times as fast")
 #
 # What would cutting corners have "saved"? In voxels of 1 m, between the two points of Fig. 12:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 city = table1_city()
 free_fine = set(map(tuple, np.argwhere(~city.occupied).tolist()))
 begin, end = (tuple(city.cell_of(point).tolist()) for point in (notch, middle))
@@ -225,8 +223,7 @@ assert math.isclose(shortest.length, 66.385, abs_tol=5e-4)
 # Now in numbers. First, the distance on an empty map of 12³ voxels, by a search without an estimate (Dijkstra):
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def zero(node, goal):
     """No estimate at all."""
     return 0.0
@@ -244,8 +241,7 @@ assert error < 1e-12
 # an estimate that is half as much again breaks it:
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def euclidean(node, goal):
     """Straight distance, REPARE Eq. 9 [cells]."""
     return math.dist(node, goal)
@@ -270,8 +266,7 @@ for estimate in (octile, euclidean, zero, too_high):
 # direction. With $w$ times an admissible estimate the route costs at most $w$ times the shortest (the proof above,
 # with $w$ in one place), and some of that is used:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 hurried = [search(free, start, goal, too_high) for start, goal in ends]
 hurried_costs = np.array([coarse.cell * g[goal] for (g, _, _), (_, goal) in zip(hurried, ends, strict=True)])
 excess = hurried_costs / costs - 1
@@ -309,8 +304,7 @@ plot.profile(coarse, {"estimate 1.5 times too high": Route(coarse.center_of(node
 # All three below are consistent, so all give the same cost. They differ in how much of the city they look at. Forty
 # random pairs, 40 m or more apart, in voxels of 2 m:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 medium = table1_city(cell=2.0)
 forty = medium.random_pairs(40, 6, apart=40)
 estimates = ("octile", "euclidean", "zero")
@@ -329,8 +323,7 @@ plot.bars(drawn, "expansions a route, mean of 40 pairs", title="Table 1's city i
 # %% [markdown]
 # In voxels of 1 m there is more of everything, and the first two compare as before:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 hundred = city.random_pairs(100, 6, apart=40, min_clearance=3.5)
 count = {
     name: sum(astar(city, *pair, heuristic=name).info["expanded"] for pair in hundred)
@@ -381,8 +374,7 @@ scene.show(city, flooding, expansion=True)
 # All of the proof still holds. $p \ge 1$, so no move costs less than its length and the estimates stay consistent.
 # And $c(n, m) = c(m, n)$, so a route costs the same in both directions. Out of the notch, with $\omega = 0.5$:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 safe_distance = 3.5
 shortest = astar(city, notch, middle)
 priced = astar(city, notch, middle, price=penalty_zone(city, safe_distance, penalty=0.5))
@@ -416,8 +408,7 @@ scene.show(city, both, safe_distance=safe_distance, colors=COLORS)
 # By hand: a straight corridor of 13 voxels (1 m each), three of them in the zone, $\omega = 0.5$. There from left to
 # right, and back:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 omega = 0.5
 zone = np.array([0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0])
 east = np.arange(13)
@@ -444,8 +435,7 @@ limits = {"highest T of\nthe detour": 16, "length of\nthe corridor": 12}
 plot.lines(east, corridor, "place in the corridor [m]", "T [m]", places={"in the zone": (7.5, 10.5)}, limits=limits,
            y_range=(11, 18))  # fmt: skip
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 occupied = np.zeros((13, 3, 1), bool)
 occupied[1:12, 1] = True  # a wall between the corridor and the detour
 corridor = City(occupied, name="A corridor and a detour")
@@ -469,8 +459,7 @@ assert [route.cost for route in ours] == [13.5, 13.5]
 # back, on a hundred random pairs of Table 1's city, 40 m or more apart, both ends 3.5 m or more from walls:
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def there_and_back(price, **options):
     """Routes for each of the hundred pairs, in both directions."""
     return [(astar(city, a, b, price=price, **options), astar(city, b, a, price=price, **options)) for a, b in hundred]
@@ -487,8 +476,7 @@ for omega in (0.1, 0.2):
         f"ω = {omega}, as printed: {differ.sum()} of 100 pairs differ, by {mean:.1f} m on average, {most:.1f} m at most"
     )
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for omega in (0.1, 0.2):
     ours = there_and_back(penalty_zone(city, safe_distance, penalty=omega))
     largest = max(abs(there.cost - home.cost) for there, home in ours)
@@ -520,8 +508,7 @@ plot.plan(city, {"as printed, there": there, "as printed, back": home})
 # and $L' + \omega' Z' \le L + \omega' Z$. Add them: $(\omega' - \omega)(Z' - Z) \le 0$, so $Z' \le Z$, and with that
 # the first gives $L \le L'$.) Over the hundred pairs:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 near = penalty_zone(city, safe_distance, penalty=1.0) > 1
 rates = (0.0, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
 length, inside, least = np.zeros((3, len(rates), 100))
@@ -569,8 +556,7 @@ plot.sliders(draw, title="out of the notch", labels={"omega": "ω"}, start={"ome
 # %% [markdown]
 # The same in numbers:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for omega in (0.2, 0.3, 0.5, 2.0):
     route = astar(city, notch, middle, price=penalty_zone(city, safe_distance, penalty=omega))
     print(f"ω = {omega}: {route.length:.1f} m, smallest clearance {route.clearance(city):.1f} m")
@@ -584,8 +570,7 @@ for omega in (0.2, 0.3, 0.5, 2.0):
 # $D_\text{min}$. The 26 points of the ring reach further out at its corners, $\sqrt3\, r$, and see nothing in
 # between:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 prices = {shape: penalty_zone(city, safe_distance, penalty=0.5, zone=shape) for shape in ("ball", "ring")}
 zones = {shape: (price > 1) & ~city.occupied for shape, price in prices.items()}
 missed = (zones["ball"] & ~zones["ring"]).sum() / zones["ball"].sum()
@@ -644,8 +629,7 @@ plot.heat_map(degrees, degrees, 100 * excess, "direction in the plan, from east 
 #
 # filled from left to right: *dynamic programming*. On the hundred pairs:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 lattice = [astar(city, *pair) for pair in hundred]
 straightened = [shortcut(route, city) for route in lattice]
 means = {
@@ -665,8 +649,7 @@ plot.bars(means, "length, mean of 100 pairs [m]")
 # That is no small change. Out of the notch, for example, the straightened route that keeps its distance is nearly as
 # short as the lattice's shortest, which scrapes along the wall:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 price = penalty_zone(city, safe_distance, penalty=1.0)
 safe = shortcut(astar(city, notch, middle, price=price), city, price=price)
 for name, route in {**both, "A* + shortcut": safe}.items():
@@ -692,8 +675,7 @@ plot.plan(city, both, safe, colors=COLORS)
 # something is in the way, the best of the neighbours that were expanded becomes the parent instead. `theta_star` does
 # this, also with a price, and pulls the route taut around its corners at the end.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 any_angle = [theta_star(city, *pair) for pair in hundred]
 again = np.array([1 - one.length / two.length for one, two in zip(any_angle, straightened, strict=True)])
 print(f"Theta* against the shortcut: {again.mean():.1%} shorter on average, by {again.min():.1%} to {again.max():.1%}")
@@ -717,8 +699,7 @@ plot.plan(city, {"A* + shortcut": straightened[most]}, any_angle[most])
 # A wall across the map with a door of 5 m by 5 m shows the difference. In the middle of the door the clearance is 2.5
 # m:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 occupied = np.zeros((30, 30, 12), bool)
 occupied[15] = True
 occupied[15, 17:22, 4:9] = False
@@ -748,8 +729,7 @@ plot.section(hall, 6.5, None, ways)
 # One subtlety. Out of the notch, a hard 3.5 m gives a slightly longer route than the soft one that also kept 3.5 m
 # all along:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 closed = astar(city, notch, middle, min_clearance=safe_distance)
 print(f"soft {priced.length:.2f} m, hard {closed.length:.2f} m")
 assert priced.length < closed.length
@@ -761,8 +741,7 @@ assert priced.length < closed.length
 # %% [markdown]
 # ## What the paper says, what we find
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 differing = {omega: int((gaps > 1e-6).sum()) for omega, gaps in gap.items()}
 largest = {omega: round(float(gaps.max()), 1) for omega, gaps in gap.items()}
 print(f"REPARE Eq. 9:  octile expands {octile_share:.2f} of what the straight distance does")

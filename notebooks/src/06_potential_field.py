@@ -65,8 +65,7 @@ notch, middle = (90, 18, 30), (50, 44, 30)  # REPARE Fig. 12
 # The bowl pulls harder the farther away the goal is, the cone with constant strength. That matters as soon as
 # something pushes back: far from the goal, the bowl presses the UAV against any wall.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for far in (5.0, 20.0, 40.0):
     pulls = [potential_forces(city, (50, 44 + far, 97), (50, 44, 97), attraction=a)[0] for a in ("quadratic", "conic")]
     print(f"{far:4.0f} m north of the goal: quadratic {pulls[0].round(2)}, conic {pulls[1].round(2)}")
@@ -88,8 +87,7 @@ for far in (5.0, 20.0, 40.0):
 # within 5 m of a wall, against central differences:
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def slope(points, goal, step=1e-5, **setting):
     """∇U by central differences at points (M, 3)."""
     shifts = step * np.eye(3)
@@ -114,8 +112,7 @@ for attraction, obstacles in product(("conic", "quadratic"), ("voxels", "surface
 # directions. Eq. 16 adds them up. Fly through a street 8 m wide between two equal walls. The pushes come from opposite
 # sides. As vectors they say where the middle is, and there they cancel. As numbers they add:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print("from the left wall   left push  right push   vector sum   sum of numbers")
 for x in (2.0, 3.0, 4.0, 5.0):
     left, right = (float(repulsion(d, 5.0, 5.0)) for d in (x, 8 - x))
@@ -131,8 +128,7 @@ assert repulsion(4.0, 5.0, 5.0) > 0
 # \partial_y^2 + \partial_z^2$: a number again, with another unit. Of the bowl it is $3 k_\text{tra}$ everywhere, of
 # the cone $2 k_\text{tra} / D_g$, so it would push hardest at the goal. At 30 m from it:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 here, goal, h = np.array([80.0, 44.0, 97.0]), (50, 44, 97), 0.01
 for attraction in ("quadratic", "conic"):
     around = here + h * np.vstack([np.eye(3), -np.eye(3)])
@@ -147,8 +143,7 @@ for attraction in ("quadratic", "conic"):
 # explained. If $D_\text{min} < R$ the push jumps to zero at $D_\text{min}$. If $D_\text{min} > R$ the bracket turns
 # negative between the two, and the obstacle *attracts*:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 distance = np.linspace(2.5, 9.0, 651)
 kinds = {"D_min = R = 5 m": 5.0, "D_min = 8 m > R": 8.0, "D_min = 3.5 m < R": 3.5}
 curves = {name: repulsion(distance, 50.0, 5.0, safe_distance=end) for name, end in kinds.items()}
@@ -171,8 +166,7 @@ plot.lines(distance, curves, "distance D to the obstacle [m]", "push, k_rep = 50
 # $k_\text{rep}$ are free. They point in different directions, so that their sizes can't be added. And weight is no
 # reason to turn: a UAV that hovers has trimmed its thrust against it. What if one does add it as a vector?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 weight = LIGHT_QUADROTOR.weight
 pull = np.array([-1.0, 0.0, 0.0])  # conic, k = 1: due west, level
 with_weight = pull + np.array([0.0, 0.0, -weight])
@@ -209,8 +203,7 @@ plot.field(city, 30, middle, area=(54, 100, 8, 52), spacing=2.0)
 # $\mathbf F$. `moves="lattice"` takes that of the 26 moves of A* that points best along $\mathbf F$, among the legal
 # ones. High up, above all roofs, the first flies straight, and the second is as short as moves allow:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 high = [((5, 8, 99.5), (80, 60, 99.5)), ((90, 20, 99.5), (10, 30, 99.5)), ((20, 90, 99.5), (95, 5, 99.5))]
 for start, goal in high:
     free = potential_field(city, start, goal, moves="continuous", reach=0.5)
@@ -225,8 +218,7 @@ for start, goal in high:
 # Now a flight among the buildings. The potential field keeps away from walls of its own accord, smoothly, and the
 # route is a curve. (A* minimises length and nothing else, so it scrapes along.)
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 start, goal = (20, 8, 20), (80, 95, 60)
 lattice = astar(city, start, goal)
 curve = potential_field(city, start, goal, moves="continuous", record=True)
@@ -246,8 +238,7 @@ plot.profile(city, both_routes, colors=COLORS)
 # route stays the same, to the last digit. That is the strength of the method. It needs no map, only a sensor that
 # sees as far as $R$; a new obstacle is dealt with when it comes into sight; and nothing is searched.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 passed = np.zeros(city.shape, bool)
 passed[tuple(city.cell_of(curve.points).T)] = True
 seen = ndimage.distance_transform_edt(~passed) < 7  # from the 5 m of its reach to the farthest corner of a voxel
@@ -263,8 +254,7 @@ assert np.array_equal(again.points, curve.points)
 # The price of not looking: REPARE Fig. 12. The UAV starts in the notch of building 1, and its goal lies behind the
 # building.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 trapped = potential_field(city, notch, middle, record=True)
 drifting = potential_field(city, notch, middle, moves="continuous", record=True)
 both_fields = {"potential field, lattice": trapped, "potential field, continuous": drifting}
@@ -312,8 +302,7 @@ figure
 # moves form a cycle. The force has no memory, so a voxel that is entered twice is entered for ever, and the library
 # stops there:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print("cycle:", " → ".join(f"({x:.1f}, {y:.1f})" for x, y, _ in cycle))
 assert len(cycle) > 2
 
@@ -321,8 +310,7 @@ assert len(cycle) > 2
 # A continuous step overshoots the bottom, and the next one overshoots it on the way back. With smaller steps it
 # trembles less, in proportion, and arrives no sooner:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 widths = {}
 for step in (0.4, 0.2, 0.1):
     route = potential_field(city, notch, middle, moves="continuous", step=step)
@@ -338,8 +326,7 @@ assert widths[0.1] < 0.5 * widths[0.4]
 # Whatever direction the UAV takes, it goes uphill.
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def potential(point):
     return float(potential_forces(city, point, middle)[2])
 
@@ -360,8 +347,7 @@ assert (curvature > 0.03).all()
 # nothing in it says "over the top". With a higher goal the UAV climbs along the wall up to the goal's height and gets
 # stuck there, as long as that is below the roof:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for up in (30, 60, 75):
     route = potential_field(city, notch, (50, 44, up), moves="continuous")
     print(f"goal at {up} m: {'arrives' if route.reached else 'stuck'} at {route.points[-1, 2]:.0f} m")
@@ -372,8 +358,7 @@ for up in (30, 60, 75):
 # **How deep is the pond?** Flood it. The lowest level at which the water runs over to the goal is that of the pass.
 # Bisect the level; a level is high enough if pond and goal lie in one connected part of $\{U \le \text{level}\}$:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 height = np.full(city.shape, np.inf)
 height[~city.occupied] = potential_forces(city, city.center_of(np.argwhere(~city.occupied)), middle)[2]
 pond, sea = tuple(city.cell_of(bottom)), tuple(city.cell_of(middle))
@@ -391,8 +376,7 @@ assert 11 < depth < 12
 #
 # **Whose start ends in a pond?** Start in each voxel at 30 m and fly to the same goal:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 k = int(city.cell_of(middle)[2])
 starts = [(i, j, k) for i, j in np.argwhere(~city.occupied[:, :, k]).tolist() if (i, j, k) != sea]
 fate = np.where(city.occupied[:, :, k], 2, 0)
@@ -417,8 +401,7 @@ plot.area_map(city, areas, points={"start of Fig. 12": [notch[:2]], "goal": [mid
 # Perhaps the forces are only badly tuned? Attraction conic or quadratic, obstacles as voxels or surface, moves on the
 # lattice or continuous, five values of $k_\text{rep}$ and five of $R$ make 200 settings, all from the same start:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 pushes, reaches = (1, 5, 50, 500, 5000), (2, 3.5, 5, 8, 12)
 kinds = list(product(("conic", "quadratic"), ("voxels", "surface"), ("lattice", "continuous")))
 left, ends = np.zeros((len(kinds), len(pushes), len(reaches))), []
@@ -453,8 +436,7 @@ figure
 # whatever the forces are. (In the notch, ground and roof are farther from the goal than $c$.) So all it takes is one
 # point:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 radius = math.hypot(20, 29)
 floor = np.stack(np.meshgrid(np.arange(70.25, 95, 0.5), np.arange(15.25, 35, 0.5), [30.0]), axis=-1).reshape(-1, 3)
 room = floor[np.linalg.norm(floor - middle, axis=1) < radius]
@@ -482,8 +464,7 @@ assert proven == 95
 # divides mean lengths, on other pairs and with its own price: its figures are up to a hundredth lower, and it shows
 # both.)
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 thousand = city.random_pairs(1000, 7, apart=40, min_clearance=4.5)
 zone = penalty_zone(city, 3.5, penalty=2.0, zone="ring")
 plain = [astar(city, *pair) for pair in thousand]
@@ -517,8 +498,7 @@ arrived = {name: np.array([route.reached for route in routes]) for name, routes 
 for name, routes in flown.items():
     print(f"{name:<32} {1e3 * np.mean([route.info['elapsed'] for route in routes]):.1f} ms a route")
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 measured = {}
 print(f"{'k_rep, R':<32} {'fails':>5}   A* / field             REPARE / field")
 for name, routes in flown.items():
@@ -552,8 +532,7 @@ plot.intervals(others, "length / length of the potential field's route, mean", p
 # * **One route in six isn't in the table.** It doesn't arrive. Those are the hard pairs, where the others fly
 #   detours; leaving them out flatters the potential field, and brings REPARE and A* closer together:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 extra = lengths["REPARE"] / lengths["A*"]
 default, free = (arrived[name] for name in ("lattice, conic, 5, 5 m", "continuous, conic, 5, 5 m"))
 print(f"REPARE / A* where the field arrives {extra[default].mean():.3f}, where it fails {extra[~default].mean():.3f}")
@@ -570,8 +549,7 @@ assert 0.3 < free[~default].mean() < 0.7
 # The paper calls the potential field the safer planner, since it keeps a distance. How much of one? A route is *safe*
 # here if it keeps 3.5 m all along, REPARE's distance for light load and mild wind (its Table 4):
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 safe = {name: np.mean([r.clearance(city) >= 3.5 for r in routes if r.reached]) for name, routes in flown.items()}
 for name in settings:
     print(f"{name:<32} {safe[name]:>4.0%} of the routes that arrive keep 3.5 m; {1 - arrived[name].mean():.0%} fail")
@@ -584,8 +562,7 @@ assert safe["lattice, surface, 200, 8 m"] == safe["lattice, conic, 5000, 8 m"] =
 # pushes, from farther away. That one is as short as Table 2 *and* keeps 3.5 m on every route. It still fails on one
 # pair in seven. Is there one that doesn't? 40 settings, on the first 150 pairs:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 tried = []
 for attraction, obstacles in product(("conic", "quadratic"), ("voxels", "surface")):
     for push, reach in product((1.0, 5.0, 50.0, 200.0, 5000.0), (5.0, 8.0)):
@@ -619,8 +596,7 @@ plot.points(marks | {"A*: always arrives": (1.0, 0.0)}, "length of A* / length o
 # more; who looks only into the box within reach, as `potential_field` does, about a thousand times; and with a table of
 # distances made in advance it is a single look. A* looks at 26 neighbours of each expanded node. Count the looks:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 steps = np.array([route.info["expanded"] for route in flown["lattice, conic, 5, 5 m"]])
 expanded = np.array([route.info["expanded"] for route in plain])
 surface = city.occupied & ~ndimage.binary_erosion(city.occupied, np.ones((3, 3, 3)), border_value=1)
@@ -681,8 +657,7 @@ plot.sliders(draw, title="potential field", labels=labels, start={"push": 5, "re
 # %% [markdown]
 # The same in numbers:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for push, reach in ((5, 5), (50, 5), (500, 8), (5000, 12)):
     routes = [potential_field(city, *pair, push=push, reach=reach) for pair in ((start, goal), (notch, middle))]
     results = [f"{route.length:.1f} m" if route.reached else "stuck" for route in routes]
@@ -692,8 +667,7 @@ for push, reach in ((5, 5), (50, 5), (500, 8), (5000, 12)):
 # %% [markdown]
 # ## What the paper says, what we find
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for name in list(settings)[:2]:
     shown = "A* {:.3f}, REPARE {:.3f}".format(*(rows[0] for rows in measured[name][:2]))
     print(f"REPARE Table 2: {shown}, {1 - arrived[name].mean():.0%} fail")

@@ -59,8 +59,7 @@ print(f"{city.name}: {city.occupied.sum():,} of {city.occupied.size:,} voxels of
 #
 # With all of that repaired it is A* with a price. What is left to decide is the price.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 occupied = np.zeros((20, 20, 12), bool)
 occupied[10] = True
 cut = City(occupied, name="A wall without a door")
@@ -98,8 +97,7 @@ except ValueError as error:
 #
 # **the same for every route.** Along the way that scrapes and the way that keeps 3.5 m:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for route in (astar(city, notch, middle), repare(city, notch, middle)):
     fine = route.resample(0.02)
     steps = np.diff(fine.points, axis=0)
@@ -165,8 +163,7 @@ def size_price(town, now):
 # An endless wall, and a UAV with a light load that flies along it. The wind blows with 9 m/s towards the wall, along
 # it (with the flight), or away from it. Table 4 says $D_\text{min} = 5.5$ m.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 occupied = np.zeros((14, 3, 3), bool)
 occupied[:2] = True
 wall = City(occupied, name="A wall")
@@ -240,8 +237,7 @@ def crashes(route, sigma, rng, speed=5.0, count=200, **where):
     return np.mean((pushed > room[at]).any(axis=1))
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 drawn = city.random_pairs(150, 8, apart=40, min_clearance=8.0)
 blocked = [pair for pair in drawn if astar(city, *pair).clearance(city) <= 0.5][:40]
 now = flight_conditions("light", Wind((9.0, 0.0)))
@@ -267,8 +263,7 @@ assert table["way 2"][3] > 1.2 * table["way 3"][3]
 #
 # Way 1 gets the first eight pairs only; it is slow, since with a price of 0 somewhere there is no estimate left.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 worked = [work_price(city, now, goal) for _, goal in blocked[:8]]
 routes["way 1"] = [astar(city, *pair, price=price) for pair, (price, _) in zip(blocked, worked, strict=False)]
 for name in ("plain A*", "way 1"):
@@ -320,8 +315,7 @@ plot.area_map(city, zones, paths=both_zones, points=ends, notes={"wind, mean\nof
               title="Zones in wind to the east, 30.5 m above the ground",
               colors={"added for the wind": plot.SKY, "nearer than 3.5 m": plot.YELLOW} | ZONE_ROUTES)  # fmt: skip
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 seen = {}
 for push in (0.0, 1.0, 2.0):
     mean = (push, 0.0, 0.0)
@@ -367,8 +361,7 @@ compared = {
 arrives = np.array([route.reached for route in compared["potential field"]])
 length = {name: np.array([route.length for route in flown]) for name, flown in compared.items()}
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print(f"the potential field doesn't arrive on {np.mean(~arrives):.1%} of the pairs")
 searched = ("A*", "REPARE", "REPARE, 4.5 m")
 table2 = {name: ratio(length[name][arrives], length["potential field"][arrives]) for name in searched}
@@ -386,8 +379,7 @@ assert abs(table2["REPARE, 4.5 m"][0] - 0.973) < 0.01
 # Notebook 06 has slightly other figures: other pairs (seed 7), the mean of the pairs' ratios, and a ring with a fixed
 # price for REPARE. Both statistics, on both sets of pairs, with REPARE at 3.5 m:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 others = city.random_pairs(1000, 7, apart=40, min_clearance=4.5)
 planned = {8: [compared[name] for name in ("A*", "REPARE", "potential field")]}
 planned[7] = [[planner(city, *pair) for pair in others] for planner in (astar, repare, potential_field)]
@@ -403,8 +395,7 @@ for seed, flown in planned.items():
 # %% [markdown]
 # The statistic makes the difference, not the pairs. And the distance to keep:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 roomy = city.random_pairs(300, 8, apart=40, min_clearance=5.5)
 plain = [astar(city, *pair).length for pair in roomy]
 for load, disturbance in (("light", "none"), ("light", "mild"), ("heavy", "mild"), ("light", "heavy")):
@@ -438,8 +429,7 @@ for name, seconds in took.items():
 # of the thousand pairs:
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def there_and_back(**options):
     """REPARE on the hundred pairs in both directions."""
     return [(repare(city, one, other, **options), repare(city, other, one, **options)) for one, other in thousand[:100]]
@@ -463,8 +453,7 @@ for omega in (0.1, 0.2):
 #
 # Before the flight REPARE's Table 3 says how much of the resilience system to switch on:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print(f"{'':<10}", *(f"{load:<13}" for load in LOADS))
 for disturbance in DISTURBANCES:
     print(f"{disturbance:<10}", *(f"{resilience_level(load, disturbance):<13}" for load in LOADS))
@@ -492,8 +481,7 @@ def is_additive(level_of):
     return linprog(np.ones(12), A_ub=above, b_ub=bounds).status == 0
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 turned = {("light", "mild"): "advanced", ("light", "heavy"): "lower"}
 print("Table 3:", is_additive(resilience_level))
 print("with two entries changed:", is_additive(lambda *at: turned.get(at, resilience_level(*at))))
@@ -506,8 +494,7 @@ assert not is_additive(lambda *at: turned.get(at, resilience_level(*at)))
 # Note 2 under the table adds a reason to stay on the ground: heavy rain may weigh more than the largest payload. Ours
 # is 1 kg, and 0.1 m² catch the drops:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 cloudburst = float(rain_force(100.0, LIGHT_QUADROTOR.rain_area))
 needed = LOADS["heavy"] * GRAVITY / cloudburst * 100
 print(f"100 mm/h press with {cloudburst:.3f} N, as {1000 * cloudburst / GRAVITY:.1f} g do")
@@ -535,8 +522,7 @@ assert needed > 30_000
 #
 # Our vehicle (1.5 kg, 28 N), payloads, winds and the two constants were chosen so that it meets the three cases.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 printed = {("light", "mild"): 3.5, ("heavy", "mild"): 4.5, ("light", "heavy"): 5.5}
 print("D_min [m] by Eq. 8 / by Eq. 9 (g: grounded, * in Table 4)")
 print(f"{'':<9}", *(f"{load:>12}" for load in LOADS))
@@ -561,8 +547,7 @@ print(f"thrust left: {reserve['light']:.1f} N with a light load, {reserve['heavy
 #
 # Do routes keep these distances? In Fig. 12's pair and in the forty blocked ones:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 cases = {f"{load} load, {disturbance} disturbance": (load, disturbance) for load, disturbance in printed}
 kept = {}
 for name, (load, disturbance) in cases.items():
@@ -617,8 +602,7 @@ flights = [blown(route, 1.0, 8) for route in (repare(city, notch, middle), astar
 trapped = potential_field(city, notch, middle)
 scene.show(city, flights[0], flights[1], trapped)
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print(trapped.reason)
 hits = {}
 for route in (astar(city, notch, middle), repare(city, notch, middle)):
@@ -665,8 +649,7 @@ figure
 # Five minutes beside a wall, 4 m off. The calm wind was predicted with 2 m. From 60 to 110 s it is three times as
 # gusty.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 clock, loose = offsets.offset_paths(1.0, 300.0, 8, step=0.1)
 stiff = resilience.ADVANCED.natural_frequency
 _, tight = offsets.offset_paths(stiff**-1.5, 300.0, 9, step=0.1, natural_frequency=stiff)
@@ -701,8 +684,7 @@ plot.lines(clock, observed, "time in flight [s]", "offset and boundary [m]", pla
 # Given a function of time as its disturbance, `repare` looks every second, and where the conditions have changed it
 # plans the rest of the route anew. Mild wind that becomes heavy six seconds after take-off:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 whole = {f"planned for {kind}": repare(city, *far, disturbance=kind) for kind in ("mild", "heavy")}
 changing = repare(city, *far, disturbance=lambda moment: "mild" if moment < 6.0 else "heavy")
 for plan in changing.info["plans"]:
@@ -785,8 +767,7 @@ for name, (load, disturbance) in cases.items():
     }
 print(len(sixty), "pairs")
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print(f"{'':<27}length/A* [95 %]        clearance: least, median   touches per 1000 flights   σ · 1.5")
 found = {}
 for name, by_planner in results.items():
@@ -857,8 +838,7 @@ plot.sliders(turn, title="REPARE and its zone", labels={"omega": "ω₀"}, start
 # %% [markdown]
 # ## What the paper says, what we find
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print("REPARE Table 2: seed 8, 1000 pairs,", *(f"{k} {v:.3f} [{a:.3f}, {b:.3f}]" for k, (v, a, b) in table2.items()))
 print("REPARE Table 4:", *(f"{route.info['safe_distance']} m: {route.length:.1f} m" for route in kept.values()))
 print("touches per 1000 flights at σ and 1.5 σ, seed 8, 60 pairs:")

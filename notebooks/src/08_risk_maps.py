@@ -72,8 +72,7 @@ COLORS = {
 # Every schoolbook has the first. With the second, half of the energy is gone before the air has done anything.
 # (RISK-ACO also drops $\rho_A$ from the formula, and then the exponent has a unit.)
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 uav = RISK_QUADROTOR
 for height in (0.1, 30.0):
     right, printed = risk.fall_speed(height), risk.fall_speed(height, as_printed=True)
@@ -93,8 +92,7 @@ assert risk.terminal_speed() == pytest.approx(62.6, abs=0.05)
 # `ballistic_fall` solves this. Dropped from rest there is no other velocity, so that it must give Eq. 2, which is a
 # test of both.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 heights = np.linspace(0.0, 80.0, 161)
 from_rest = risk.ballistic_fall(heights, speed=0.0)
 assert np.allclose(from_rest.fall_speed, risk.fall_speed(heights), atol=1e-5)
@@ -125,8 +123,7 @@ plot.lines(heights, curves, "height fallen [m]", "vertical speed on impact [m/s]
 # small: $A = 0.0188$ m² is a disc 15 cm wide, for a UAV of 40 cm, and with $R_I = 0.3$ its terminal speed of 62.6 m/s
 # is high for a quadrotor with arms and rotors. Let one that tumbles have $R_I A = 0.06$ m². What would that change?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 tumbling = replace(uav, fall_drag_area=0.06, name="the same, tumbling")
 for vehicle in (uav, tumbling):
     fallen = risk.ballistic_fall(30.0, vehicle)
@@ -147,8 +144,7 @@ assert energy < 0.45 * energies["Eq. 4"]
 #
 # $$ A_\text{exp} = 2\,(r_p + R_\text{uav})\,d + \pi\,(r_p + R_\text{uav})^2, \qquad d = h_p / \tan\theta. \tag{5} $$
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 down, forward = float(risk.fall_speed(30.0)), uav.cruise_speed
 reach, tall = risk.fall.PERSON_RADIUS + uav.diameter / 2, risk.fall.PERSON_HEIGHT
 glide = tall * forward / down
@@ -206,8 +202,7 @@ figure
 # it becomes a step at $\beta = 34$ J: less kills nobody, more kills everybody who is hit, and exactly $\beta$ kills
 # with $1/(1 + \sqrt{\alpha/\beta})$. Eq. 7 is also how to compute it: no power can overflow.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print(
     "shelter                 P at", *(f"{energies[k]:.0f} J ({k})" for k in ("Eq. 2", "Eq. 4", "as printed")), sep="   "
 )
@@ -249,8 +244,7 @@ plot.lines(energy, chances, "energy of the impact E [J]", "chance to die when hi
 # The tables print $K = 0.1$ cars "per unit length", without the unit. A test: the papers' whole routes have a risk of
 # $8.75\cdot10^{-7}$ to $2.37\cdot10^{-5}$.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for unit, cars_per_km in (("metre", 100.0), ("kilometre", 0.1)):
     share = risk.vehicle_share(cars_per_km)
     rate = risk.vehicle_rate(share)
@@ -266,8 +260,7 @@ assert risk.vehicle_rate(risk.vehicle_share(0.1)) == pytest.approx(5.376e-8)
 #
 # And the people? Per hour at 30 m, over 30 000 people per km²:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 rates = {name: float(risk.person_rate(30.0, shelter=shelter)) for name, shelter in risk.SHELTER.items()}
 for name, rate in rates.items():
     shelter = risk.SHELTER[name]
@@ -292,8 +285,7 @@ by_shelter = {f"shelter {s:g}: {name}": risk.person_rate(levels, shelter=s) for 
 plot.lines(levels, by_shelter, "height above the ground [m]", "r [deaths per hour of flight]", log="y", x_range=(5, 80),
            y_range=(1e-8, 2e-5))  # fmt: skip
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for name, shelter in risk.SHELTER.items():
     ends = risk.person_rate(np.array([10.0, 80.0]), shelter=shelter)
     print(f"{shelter:<5g}{name:<23} from 10 to 80 m: r changes by a factor of {ends[1] / ends[0]:.2f}")
@@ -331,8 +323,7 @@ for axes, height in zip(panels, (7.5, 27.5, 47.5), strict=True):
     plot.value_map(campus.city, layer, plot.RISK_LABEL, norm=norm, title=f"{height:g} m", axes=axes)
 figure
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 low, high = (campus.rate[:, :, campus.city.cell_of((0, 0, z))[2]] for z in (27.5, 47.5))
 both = campus.flyable[:, :, 5] & campus.flyable[:, :, 9]
 change = (high / low)[both]
@@ -371,8 +362,7 @@ plot.sliders(at_height, title="risk", labels=labels, start={"height": 27.5}, pro
 #
 # One and the same route, the shortest from the 5 m map, on maps of the same campus with smaller cells:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 shortest = least_risk(campus, start, goal, risk_weight=0.0, length_weight=1.0)
 print("cell   sum over cells   ∫ r ds / Δx   expected deaths per mission")
 deaths = {}
@@ -403,8 +393,7 @@ assert max(deaths.values()) / min(deaths.values()) < 1.15
 # which never says too much: an admissible estimate for A* over the states ([05 A*](05_astar.ipynb) proves why that is
 # enough). The second search then walks nearly straight to the goal.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 safest = least_risk(campus, start, goal)
 plain = least_risk(campus, start, goal, heuristic="zero")
 any_turn = least_risk(campus, start, goal, max_turn=np.pi)
@@ -475,8 +464,7 @@ print("the risk of equally short routes:", *(f"{route.cost:.2e}" for route in (l
 # $f_1$ is not given. We add up $f_1/\max(D, 1\text{ m})$ over buildings and along the way, below the roofs only, with
 # $f_1 = 100$ m². For the same routes, printed and additive:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 j0 = named(
     least_risk(campus, start, goal, risk_weight=0.0, length_weight=0.5, threat_weight=0.2), "J0: length and threat"
 )
@@ -493,8 +481,7 @@ for route in (*blind, aware):
 # $J_0$ climbs above the roofs, where no building threatens. It is longer than the aware route, and five times as
 # risky: a detour helps only if it is made for the right reason. Cuts of the aware route:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for route in blind:
     cut, sums = 1 - aware.cost / route.cost, 1 - campus.cell_sum(aware) / campus.cell_sum(route)
     print(f"against {route.planner:<22}: risk −{cut:.1%} (by sums over cells −{sums:.1%}), "
@@ -532,8 +519,7 @@ front = pareto_front(campus, start, goal, lengths=60)
 marked = [named(route, name) for route, name in ((tie, tie.planner), (j0, j0.planner), (worst, worst.planner))]
 plot.front(front, *marked, label="risk ∫ r ds/Δx [1/h]", colors=COLORS)
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for share in (0.2, 0.5, 0.8, 0.86):
     enough = next(route for route in front if route.cost <= (1 - share) * front[0].cost)
     print(f"risk −{share:.0%} against the least risky shortest: {enough.length / front[0].length - 1:+.1%} of length "
@@ -590,8 +576,7 @@ cuts = np.array([cuts_on(random_campus(seed)) for seed in range(40)])
 print("campuses, allowances, readings:", cuts.shape)
 print("RISK-ACO prints −{:.1%}, PSO-BAS −{:.1%}".format(*CLAIMED.values()))
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 rng = np.random.default_rng(5)
 median, interval, reached = {}, {}, {}
 for (paper, claim), column in zip(CLAIMED.items(), cuts.swapaxes(0, 1), strict=True):
@@ -621,8 +606,7 @@ figure
 # The reading of "blind" alone moves the median by 14 to 16 points. And why do campuses differ so much? Measure how far
 # the routes fly over *open ground*, where people have no shelter and which is no road:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 crossed, left_over = np.zeros((2, 40))
 for seed in range(40):
     risk_map = random_campus(seed)
@@ -651,8 +635,7 @@ assert sum(those.sum() for those in kinds.values()) == 40
 # So far the risk of a failure was counted on the ground straight below. But the wreck has 16 m/s forward and falls
 # for more than two seconds. Eq. 4 says where it lands:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for height in (22.0, 27.0, 32.0):
     fall = risk.ballistic_fall(height)
     print(f"from {height:.0f} m: {fall.duration:.1f} s, {fall.drift:.0f} m ahead, {fall.drift / 5:.1f} cells of 5 m")
@@ -682,8 +665,7 @@ figure
 # wind it would shift once more.) `RiskMap.rate_ahead` has it for all 26 moves, `integral(route, drift=True)` for a
 # route, `least_risk(..., drift=True)` plans with it.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 drift_aware = least_risk(campus, start, goal, drift=True)
 truth = {name: campus.integral(route, drift=True) for name, route in (("blind", safest), ("aware", drift_aware))}
 print(f"drift-blind optimum: claims {safest.cost:.2e}, true {truth['blind']:.2e}, {safest.length:.1f} m")
@@ -712,8 +694,7 @@ falls = {
     for name, way in (("drift-blind", safest.points), ("drift-aware", drift_aware.points))
 }
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 in_crowd = {}
 for name, ends in falls.items():
     i, j, _ = np.clip(campus.city.cell_of([rest for rest, _ in ends]), 0, 29).T
@@ -762,8 +743,7 @@ for row, risk_map in enumerate(maps):
 assert (possible < true).all()
 print(f"on {len(maps)} maps the drift-blind optimum was never the best")
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 ratios = {"true risk over claimed": true / claimed, "true risk over the drift-aware one": true / possible}
 for name, ratio in ratios.items():
     quartiles = np.quantile(ratio, [0.25, 0.5, 0.75])
@@ -840,8 +820,7 @@ shelter = risk.shelter_layer(town, np.where(cars > 0, "none", ground))
 town_risk = RiskMap(town, population, shelter, cars, min_height=10.0)
 plot.layers(town_risk)
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 ends = (-17.5, 12.5, 17.5), (187.5, 122.5, 17.5)
 direct = named(least_risk(town_risk, *ends, risk_weight=0.0, length_weight=1.0), "shortest", town_risk)
 around = named(least_risk(town_risk, *ends, max_length=1.15 * direct.length), "at most +15 %", town_risk)
@@ -866,8 +845,7 @@ plot.risk(town_risk, 17.5, direct, around, colors=COLORS)
 #
 # ## What the papers say, what we find
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for paper, allowed in ALLOWED.items():
     route = least_risk(campus, start, goal, max_length=allowed * tie.length)
     on_campus = [1 - route.cost / other.cost for other in blind]
@@ -884,8 +862,7 @@ assert np.allclose([interval[paper, READINGS[0]] for paper in ALLOWED], [[0.50, 
 # %% [markdown]
 # And PSO-BAS's 8.75·10⁻⁷ itself: could any route of 156.74 m have so little?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 lowest = float(risk.person_rate(80.0, shelter=1.0))
 along = 8.75e-7 / (156.74 / 5)
 cells = 8.75e-7 / rates["industry"]

@@ -93,8 +93,7 @@ def step_odds(at, came, visited, alpha=1.0, beta=2.0, tau=1.0):
     return {to: w / sum(weight.values()) for to, w in weight.items()}
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for beta in (2, 12, 80):
     odds = step_odds(door, None, {door}, beta=beta)
     print(f"β = {beta}:", *(f"{to} {p:.3f}" for to, p in sorted(odds.items())))
@@ -142,8 +141,7 @@ print(f"{len(likely)} ways lead to the goal; {dead:.1%} of the ants get stuck")
 # just as often. We let 200 000 walk in a single generation, so that no scent has been laid, and recognise each way by
 # its cost.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 ends = [tuple(yard.city.center_of((*node, 0))) for node in (door, gate)]
 walked = ant_colony(yard, *ends, rng=9, budget=200_000, ants=200_000, beta=2.0, gamma=0.0).info["ants"]
 price = yard.rate[:, :, 0]
@@ -174,8 +172,7 @@ figure
 # Eq. 2 looks harmless. But try the printed $\beta = 80$, $\rho = 0.8$, 150 m from the goal, on voxels where no ant
 # has been for 500 generations:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print(f"30^80 = {30.0**80:.0e}, η^β at 150 m = {150.0**-80:.0e}, 0.2^500 = {0.2**500}")
 tau = np.array([15.0, 15.0]) * 0.2**440
 weight = tau**0.5 * np.array([150.0, 155.0]) ** -80
@@ -314,8 +311,7 @@ def odds_along(beta, gamma=0.0):
     return np.array(found)
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 looks = {"β = 80": odds_along(80.0), "β = 12": odds_along(12.0), "β = 12, γ = 2": odds_along(12.0, 2.0)}
 for name, along in looks.items():
     first, near = along[0], along[np.argmin(np.abs(along[:, 0] - 5))]
@@ -352,8 +348,7 @@ figure
 # $\tau_\text{max}$, and the unvisited come to rest at 0.05 after $\ln(0.05/15)/\ln 0.9 = 54$ generations. From then on
 # a step off the scent is 300 times less likely than one along it, not infinitely so.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 mine = ant_colony(campus, start, goal, rng=0, budget=1000, record=True)
 theirs = ant_colony(campus, start, goal, rng=0, budget=1000, record=True, as_printed=True)
 shortest = least_risk(campus, start, goal, risk_weight=0.0, length_weight=1.0).length
@@ -396,8 +391,7 @@ cases = [
 life = sweep(watched, cases, jobs=2, progress=False)
 print(f"{len(life)} colonies on {len(maps)} campuses")
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 last, ways, quartiles = {}, {}, {}
 for name, runs in (("printed", life[:120]), ("ours", life[120:])):
     arrive, different, last[name] = (np.array(column) for column in zip(*runs, strict=True))
@@ -447,8 +441,7 @@ kinds = {
 comparison = compare_planners(kinds, maps, budget=4000, jobs=2, progress=False)
 print(f"{comparison.gaps.size} runs")
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 table = comparison.table()
 print("gap to the exact optimum [%]   median [95 % over maps]     90 %   stuck")
 for name, row in table.iterrows():
@@ -504,8 +497,7 @@ cases = [{"number": n, "seed": s, "as_printed": how} for how in (True, False) fo
 runs = np.array(sweep(split_up, cases, jobs=2, progress=False)).reshape(2, 60, 3, len(SPLITS))
 print(f"{len(cases)} cases of {len(SPLITS)} splittings")
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print("median gap [%] after splits    ", *(f"{n:6d}" for n in SPLITS))
 for name, run in zip(("printed", "ours"), runs, strict=True):
     for how, column in (("split", 0), ("as many ants, no split", 1)):
@@ -545,8 +537,7 @@ for name, run in zip(("printed", "ours"), runs, strict=True):
 # How often to split? Section 4 (step 3) says: until the demand is met. The demand is a number that somebody must give,
 # such as the risk that a route may have at most. Then no more ants walk than it takes:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for allowed in (1.5, 1.1, 1.05):
     demand = allowed * comparison.exact[0].cost
     route = ant_colony(maps[0], start, goal, rng=1, budget=5500, splits=10, demand=demand)
@@ -560,8 +551,7 @@ for allowed in (1.5, 1.1, 1.05):
 # RISK-ACO Table 4 has one run of each colony: basic 6.12·10⁻⁶ in 8.12 s, improved 4.82·10⁻⁶ in 7.67 s. That is −21 %
 # of risk and −6 % of time. Here are the same two on twelve campuses, 120 pairs of runs:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 improved, basic = (1 + comparison.gaps[comparison.planners.index(name)] for name in ("printed", "the same, any turn"))
 change = improved / basic - 1
 quarter, middle, three = np.quantile(change, [0.25, 0.5, 0.75])
@@ -605,8 +595,7 @@ by_ants = np.array(sweep(cut_and_detour, cases, jobs=2, progress=False)).reshape
 by_search = np.array([cut_and_detour(number, 0, "exact") for number in range(12)])[:, None]
 print("planners, campuses, seeds, aims, (cut, detour):", by_ants.shape)
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print("                            all 12 campuses          reference campus")
 found = {}
 for name, values in (("printed", by_ants[0]), ("ours", by_ants[1]), ("exact", by_search)):
@@ -679,8 +668,7 @@ plot.sliders(turn, title="the colony's route", labels=labels, start=first, progr
 # %% [markdown]
 # ## What the paper says, what we find
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 medians = {name: round(100 * float(np.median(gaps)), 1) for name, gaps in zip(kinds, comparison.gaps, strict=True)}
 print("median gaps [%]:", medians)
 print("splits:", *(f"{name} {100 * np.median(run[:, 0, 0]):.1f} → {100 * np.median(run[:, 0, -1]):.1f} %"

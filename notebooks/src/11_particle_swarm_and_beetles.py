@@ -42,8 +42,7 @@ from uavlab.route import Route
 from uavlab.spline import cubic_bspline
 from uavlab.sweep import sweep
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 COLORS = {
     "PSO, ours": plot.PINK, "PSO, printed (ω = 1)": plot.ORANGE, "PSO-BAS, ours": plot.GREEN,
     "exact optimum": plot.BLACK, "exact, refined": plot.BLUE,
@@ -161,8 +160,7 @@ def walks_and_sizes(inertia, steps=60, count=100_000):
     return x, np.array(sizes)
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 walks = {inertia: walks_and_sizes(inertia) for inertia in (1.0, 0.9, 0.7, 0.4)}
 print("ω     factor per step: mean  mean square     E[x²] after 10 steps: Eq. 4, mean of 100,000 walks")
 for inertia, (x, sizes) in walks.items():
@@ -262,8 +260,7 @@ assert all(typical("PSO, ours", f) < typical("PSO, printed (ω = 1)", f) / 4 for
 #
 # **Uphill.** It walks even if it finds less at neither tip, and even if it is worse off where it arrives.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 rng = np.random.default_rng(3)
 cloud = {"from a cube (PSO-BAS Eq. 17)": rng.uniform(-1, 1, (10**6, 2)), "Gaussian": rng.normal(size=(10**6, 2))}
 shares = {}

@@ -35,8 +35,7 @@ from uavlab.risk import CAMPUS_FLIGHT, random_campus, reference_campus
 from uavlab.spline import Curve, allowed_speed, cubic_bspline, feasibility, greatest_speed, smooth
 from uavlab.vehicle import GRAVITY, RISK_QUADROTOR
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 BLACK, BLUE, GREEN, ORANGE, PINK, YELLOW = plot.BLACK, plot.BLUE, plot.GREEN, plot.ORANGE, plot.PINK, plot.YELLOW
 COLORS = {"least risk + B-spline": BLACK, "swarm, 1 waypoint": ORANGE, "PSO-BAS, its B-spline": GREEN}
 uav = RISK_QUADROTOR
@@ -119,8 +118,7 @@ figure
 # of Eq. 3 multiplies by $t$ once, so its degree is $n$ and its order $n + 1$. And they close the intervals on *both*
 # sides, $t_i \le t \le t_{i+1}$ (PSO-BAS Eq. 23). At a knot two of them then count, and the basis adds up to 2.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 knots = np.arange(11.0)
 t = np.linspace(0, 10, 401)  # the knots are among them
 ours, printed = spline.basis_functions(t, knots), spline.basis_functions(t, knots, as_printed=True)
@@ -153,8 +151,7 @@ figure
 # Who evaluates the printed basis at the knots gets a UAV that jumps to twice its coordinates once per segment. Is ours
 # right? SciPy has B-splines as well. Three ways to the same curve: Eq. 1, Eq. 3, and SciPy's.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 rng = np.random.default_rng(11)
 off = {"matrix, phantom ends": [], "matrix, clamped ends": [], "basis, degrees 1 to 5": []}
 for count in range(2, 42):
@@ -202,8 +199,7 @@ figure
 # **Local control.** A point has a weight in four segments only. Move it, and the rest of the curve stays as it was,
 # to the last digit: a route can be mended in one place.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 way = np.column_stack([np.arange(0, 55, 5.0), [0, 3, -2, 4, 0, 2, -3, 3, 0, -2, 1]])
 moved = way.copy()
 moved[5] += (0.0, 7.0)
@@ -228,8 +224,7 @@ plot.diagram("x [m]", "y [m]", paths=paths, points={"point 5, moved by 7 m": mov
 # ([05 A*](05_astar.ipynb)) often have legs of ten to fifty metres, and pass the corners of buildings closely, because
 # they are short. Here is one through REPARE's city, 30 m above the ground, planned to keep 1 m. The body is 0.4 m wide.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 city = table1_city()
 grid_route = astar(city, (90.5, 18.5, 30.5), (50.5, 44.5, 30.5), min_clearance=1.0)
 route = shortcut(grid_route, city)
@@ -269,8 +264,7 @@ mended = {number: smooth(any_angle[number], city, uav, min_clearance=0.0) for nu
 clear["any-angle, repaired"] = clear["any-angle, not repaired"].copy()  # straight routes have nothing to repair
 clear["any-angle, repaired"][bent] = [curve.clearance(city) for curve in mended.values()]
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 radius = uav.diameter / 2
 print(f"bodies that touch            {len(bent)} routes   the {bent.sum()} of them that bend   least clearance")
 for name, values in clear.items():
@@ -290,8 +284,7 @@ assert 0.35 < np.mean(clear["any-angle, not repaired"][bent] < radius) < 0.65
 # Nodes of the grid: none. Any-angle routes that bend: every second one would be flown into a wall. After repair: none.
 # The price is curvature:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 touched = np.flatnonzero(clear["any-angle, not repaired"] < radius)
 curves = {
     "grid": [Curve(on_grid[number].points) for number in touched],
@@ -317,8 +310,7 @@ scene.show(city, repaired, {"any-angle route": route})
 # The exponent is 3, and not 2/3 or 2 as some programs have it: `curvature` on a circle and on a helix, run through at
 # uneven speed, must give what geometry says.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 time = np.linspace(0.1, 3, 7)
 angle, rate, gain = time**2, 2 * time, 2.0  # an angle that grows faster and faster
 for radius_, climb, name in ((4.0, 0.0, "circle of 4 m"), (4.0, 3.0, "helix of 4 m that climbs 3 m per radian")):
@@ -366,8 +358,7 @@ plot.curve_profile(smoothed, of_swarm, speed=uav.cruise_speed, cell=campus.city.
 # $$ \kappa L = \frac{2\sin(\theta/2)}{\cos^2(\theta/2)}. \tag{8} $$
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 def turn_of(degrees, leg=1.0, legs=4):
     """A curve that turns once, between even legs."""
     theta = np.radians(degrees)
@@ -397,8 +388,7 @@ for degrees in (45, 60, 90):
 # have both: it makes the cut small, therefore the curvature large. What do the exact routes of forty random campuses
 # need, smoothed over every node?
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 found = [Curve(least_risk(random_campus(seed), start, goal).points) for seed in range(40)]
 level = np.array([curve.level_curvature.max() for curve in found])
 per_voxel = np.array([5.0 * curve.curvature.max() for curve in found])

@@ -102,8 +102,7 @@ sigmas = {name: np.array([theory_and_flown(uav, mean, s) for s in strengths]) fo
 heavy = LIGHT_QUADROTOR.loaded(LOADS["heavy"])
 sigmas["head wind, heavy load"] = np.array([theory_and_flown(heavy, (-6.0, 0.0), s) for s in strengths])
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print("flown σ over Eq. 5, along the stream, for gusts of", *(f"{s:5g}" for s in strengths), "m/s")
 for name, values in sigmas.items():
     print(f"{name:<49}", *(f"{flown / said:5.2f}" for said, flown in values[:, :, 0]))
@@ -160,8 +159,7 @@ def planned(pair, load="light", disturbance="mild"):
     }
 
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 routes = {"far": planned(far), "notch": planned(notch)}
 for name, by_planner in routes.items():
     for planner, route in by_planner.items():
@@ -193,8 +191,7 @@ scene.show(city, flights={planner: flights[0] for planner, flights in in_calm.it
 # In calm air A* crashes! Its route passes at exactly half a metre from the walls, and the body has a radius of half a
 # metre. Three ways to fly it:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 scrapes = {
     "offsets of 0 m": (OffsetProcess(0.0), Autopilot()),
     "a body, perfect GPS": (calm, Autopilot(gps=PERFECT_GPS)),
@@ -214,8 +211,7 @@ for name, (disturbance, autopilot) in scrapes.items():
 #
 # A storm that makes σ about a metre: 9 m/s from the west, gusts of 4 m/s that last 3 s.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 storm = Wind((9.0, 0.0), deviation=4.0, correlation=3.0)
 in_storm = {name: flown(by_planner, storm) for name, by_planner in routes.items()}
 for name, by_planner in in_storm.items():
@@ -303,8 +299,7 @@ for name, (load, kind) in cases.items():
     rates[name] = {planner: crashes(plans, OffsetProcess(sigma)) for planner, plans in fleet[name].items()}
 trapped = sum(not route.reached for route in fleet[name]["potential field"])
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 print(f"the potential field doesn't arrive on {trapped} of {len(pairs)} pairs")
 for name, by_planner in rates.items():
     print(f"{name}, D_min = {safe_distance(*cases[name])} m")
@@ -364,8 +359,7 @@ surprised = {"as assumed": rates["light load, mild wind"]} | {
     for name, surprise in surprises.items()
 }
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 for name, by_planner in surprised.items():
     print(f"{name:<21}", *(f"{planner} {rate.per_thousand:.3g} [{rate.low:.3g}, {rate.high:.3g}]  "
                             for planner, rate in by_planner.items()))  # fmt: skip
@@ -417,8 +411,7 @@ logs = {name: fly(route, city, vehicle, wind, gusts_alone, rng=12) for name, (ve
 figure = plot.in_flight(logs, **{"greatest thrust": LIGHT_QUADROTOR.thrust})
 figure
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 words = {}
 for name, (vehicle, wind, route) in loaded.items():
     runs = monte_carlo(route, city, vehicle, wind, gusts_alone, rng=12, flights=100)
@@ -459,8 +452,7 @@ assert 1.7 < np.abs(logs["heavy load, mild wind"].column("across")).max() < 2.1
 # their control pass three quarters on, so that the battery gives a third more (`uavlab.power`). Energy isn't lost: what
 # the battery gave and what the wind did is found again as height, motion and losses, in every flight.
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 parts = ("induced", "profile", "drag", "climb")
 for name, log in logs.items():
     energy, length = log.energy, loaded[name][2].length
@@ -489,8 +481,7 @@ plot.lines(speeds, {"from the battery": level.battery}, "speed through the air, 
 # nothing, the largest 10 %). This is the pair with the largest gain, from 65 m down to the ground, in a calm and in two
 # winds of 9 m/s:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 high, low = (33.5, 38.5, 65.5), (63.5, 7.5, 7.5)
 for name, wind in {"calm": (0.0, 0.0), "head wind": (-5.0, -7.5), "tail wind": (5.0, 7.5)}.items():
     shortest, cheapest = astar(city, high, low), least_energy(city, high, low, uav, Wind(wind))
@@ -528,8 +519,7 @@ def with_strategy(strategy, flights=20):
 
 turned = {strategy: with_strategy(strategy) for strategy in ("fixed", "adaptive", "grounded")}
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 shares, took = {}, {}
 for strategy, runs in turned.items():
     outcome = np.concatenate([run.outcome for run in runs])
@@ -569,8 +559,7 @@ plot.finished(figure)
 #
 # Offsets of 3 000 flights of REPARE's far route, ten times a second:
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 many = monte_carlo(routes["far"]["REPARE"], city, uav, OffsetProcess(1.0), rng=12, flights=3000, every=0.1,
                    time_step=0.05)  # fmt: skip
 printed, right = (safety_domain(many.samples, as_printed=as_printed) for as_printed in (True, False))
@@ -585,8 +574,7 @@ assert abs(right.in_ellipse - 0.9973) < 0.0005
 # %%
 plot.safety_domain(many.samples, **{"3σ_as printed": printed, "3.44σ": right})
 
-# %%
-# NBVAL_CHECK_OUTPUT
+# %% tags=["nbval-check-output"]
 beyond = printed.model.radius_in_sigma(np.nan_to_num(many.offsets[..., 1:])) > 3.0
 for seconds in (0.0, 1.0, 5.0, 10.0, 20.0, 26.0):
     inside = ~beyond[:, : int(10 * seconds) + 1].any(axis=1)

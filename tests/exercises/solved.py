@@ -1,10 +1,13 @@
 """The exercises and their worked solutions, as the solution notebooks have them."""
 
+import importlib
 import re
 from functools import cache
 from pathlib import Path
 
 import jupytext
+
+from uavlab.exercises.kinds import Quiz
 
 SOURCES = sorted((Path(__file__).parents[2] / "notebooks/src/solutions").glob("*.py"))
 CHECKED = re.compile(r'^exercises\.check\("(\d\d\.\d)", (\w+)\)', re.MULTILINE)
@@ -21,3 +24,16 @@ def solutions_of(chapter):
         if cell.cell_type == "code":
             exec(cell.source, namespace)
     return namespace
+
+
+def asked_for(number):
+    """What an exercise asks for: a "function", a "choice" or a "value"."""
+    exercise = getattr(importlib.import_module(f"uavlab.exercises.chapter{number[:2]}"), f"exercise_{number[3:]}")
+    if isinstance(exercise, Quiz):
+        return "choice"
+    return "value" if hasattr(exercise, "value") else "function"
+
+
+FUNCTIONS = [number for number in EXERCISES if asked_for(number) == "function"]
+CHOICES = [number for number in EXERCISES if asked_for(number) == "choice"]
+VALUES = [number for number in EXERCISES if asked_for(number) == "value"]

@@ -12,7 +12,7 @@ from uavlab.offsets import coverage, pauta_filter
 K = 3.43935
 
 
-@pytest.mark.parametrize("number", ["02.1", "02.2", "02.3"])
+@pytest.mark.parametrize("number", ["02.2", "02.3", "02.4"])
 def test_function_that_returns_nothing_is_told_so(number):
     assert "returns nothing" in check(number, lambda *question: None).hint
 
@@ -32,8 +32,8 @@ def test_function_that_returns_nothing_is_told_so(number):
     ],
 )
 def test_mistakes_with_the_plane(answer, hint):
-    assert not check("02.1", answer)
-    assert hint in check("02.1", answer).hint
+    assert not check("02.2", answer)
+    assert hint in check("02.2", answer).hint
 
 
 @pytest.mark.parametrize(
@@ -55,12 +55,12 @@ def test_mistakes_with_the_plane(answer, hint):
     ],
 )
 def test_mistakes_with_the_distance(answer, hint):
-    assert not check("02.2", answer)
-    assert hint in check("02.2", answer).hint
+    assert not check("02.3", answer)
+    assert hint in check("02.3", answer).hint
 
 
 def test_a_rounded_radius_is_right():
-    assert check("02.2", lambda s, d, m, n: 3.439 * s + d / 2 + max(0, -np.dot(m, n)))
+    assert check("02.3", lambda s, d, m, n: 3.439 * s + d / 2 + max(0, -np.dot(m, n)))
 
 
 def filtered(samples, rounds=100, radius=3.0, center=np.mean, far=np.abs):
@@ -101,8 +101,8 @@ def in_place(samples):
     ],
 )
 def test_mistakes_with_the_filter(answer, hint):
-    assert not check("02.3", answer)
-    assert hint in check("02.3", answer).hint
+    assert not check("02.4", answer)
+    assert hint in check("02.4", answer).hint
 
 
 def test_variants_of_the_filter_are_right():
@@ -114,7 +114,7 @@ def test_variants_of_the_filter_are_right():
         return samples
 
     for answer in (worst_first, filtered, lambda x: list(filtered(x))):
-        assert check("02.3", answer)
+        assert check("02.4", answer)
 
 
 def test_questions_need_several_rounds_and_have_errors_to_find():

@@ -9,7 +9,7 @@ from scipy.stats import norm
 from uavlab.exercises import check
 from uavlab.prediction import class_probabilities, compare_models, make_dataset, score
 
-NUMBERS = [("03.1", "under_prediction"), ("03.2", "most_probable_class"), ("03.3", "right_answers")]
+NUMBERS = [("03.2", "under_prediction"), ("03.3", "most_probable_class"), ("03.4", "right_answers")]
 
 
 @pytest.mark.parametrize(("number", "name"), NUMBERS)
@@ -32,7 +32,7 @@ def test_function_without_return_is_told_so(number, name):
     ],
 )
 def test_mistakes_with_predicting_too_low(answer, hint):
-    verdict = check("03.1", answer)
+    verdict = check("03.2", answer)
     assert not verdict
     assert hint in verdict.hint
 
@@ -60,13 +60,13 @@ def by_area(median, spread, class_count, *, log=True, last=True, first=1):
     ],
 )
 def test_mistakes_with_the_most_probable_class(answer, hint):
-    verdict = check("03.2", answer)
+    verdict = check("03.3", answer)
     assert not verdict
     assert hint in verdict.hint
 
 
 def test_another_way_to_the_most_probable_class_is_right(solutions):
-    assert check("03.2", by_area)
+    assert check("03.3", by_area)
     for median in np.linspace(0.3, 8, 40):
         expected = 1 + class_probabilities([math.log(median)], 0.3, 6).argmax()
         assert solutions["most_probable_class"](median, 0.3, 6) == expected
@@ -86,13 +86,13 @@ def test_another_way_to_the_most_probable_class_is_right(solutions):
     ],
 )
 def test_mistakes_with_counts(answer, hint):
-    verdict = check("03.3", answer)
+    verdict = check("03.4", answer)
     assert not verdict
     assert hint in verdict.hint
 
 
 def test_another_way_to_the_count_is_right():
-    assert check("03.3", lambda percent, n: next((k for k in range(n + 1) if round(100 * k / n, 3) == percent), -1))
+    assert check("03.4", lambda percent, n: next((k for k in range(n + 1) if round(100 * k / n, 3) == percent), -1))
 
 
 def test_under_prediction_is_the_measure_of_the_library(solutions):

@@ -35,8 +35,8 @@ def octile_without_abs(dx, dy, dz):
     ],
 )
 def test_mistakes_with_the_octile_distance(answer, hint):
-    assert not check("05.1", answer)
-    assert hint in check("05.1", answer).hint
+    assert not check("05.2", answer)
+    assert hint in check("05.2", answer).hint
 
 
 def box(node, move):
@@ -81,8 +81,8 @@ def turned_round(occupied, node, move):
     ],
 )
 def test_mistakes_with_legal_moves(answer, hint):
-    assert not check("05.2", answer)
-    assert hint in check("05.2", answer).hint
+    assert not check("05.3", answer)
+    assert hint in check("05.3", answer).hint
 
 
 def search(
@@ -121,24 +121,24 @@ def search(
     ],
 )
 def test_mistakes_with_the_search(mistake, hint):
-    verdict = check("05.3", lambda *question: search(*question, **mistake))
+    verdict = check("05.4", lambda *question: search(*question, **mistake))
     assert not verdict
     assert hint in verdict.hint
 
 
 def test_search_without_a_mistake_is_right():
-    assert check("05.3", search)
+    assert check("05.4", search)
 
 
 def test_dijkstra_s_search_is_told_so():
-    verdict = check("05.3", lambda graph, start, goal, estimate: search(graph, start, goal, lambda place: 0.0))
+    verdict = check("05.4", lambda graph, start, goal, estimate: search(graph, start, goal, lambda place: 0.0))
     assert "never asks for the estimate" in verdict.hint
 
 
 def test_search_that_returns_nothing_is_told_so():
-    assert "returns nothing" in check("05.3", lambda *question: None).hint
+    assert "returns nothing" in check("05.4", lambda *question: None).hint
 
 
 def test_the_broken_search_of_the_exercise_is_told_what_is_wrong(solutions):
     assert solutions["search"](solutions["roads"], "harbour", "castle", solutions["left"].get) != 7
-    assert "no road" in check("05.3", solutions["search"]).hint
+    assert "no road" in check("05.4", solutions["search"]).hint

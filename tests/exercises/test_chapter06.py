@@ -8,7 +8,7 @@ from solved import EXERCISES
 
 from uavlab.exercises import check
 
-NUMBERS = ("06.1", "06.2", "06.3")
+NUMBERS = ("06.2", "06.3", "06.4")
 
 
 @pytest.mark.parametrize("number", NUMBERS)
@@ -64,8 +64,8 @@ def nothing_beyond(*question):
     ],
 )
 def test_mistakes_with_the_push_of_a_voxel(answer, hint):
-    assert not check("06.1", answer)
-    assert hint in check("06.1", answer).hint
+    assert not check("06.2", answer)
+    assert hint in check("06.2", answer).hint
 
 
 def by_newton(pull, push, reach):
@@ -85,7 +85,7 @@ def by_cubic(pull, push, reach):
 
 @pytest.mark.parametrize("answer", [by_newton, by_cubic])
 def test_other_ways_to_the_balance(answer):
-    assert check("06.2", answer)
+    assert check("06.3", answer)
 
 
 @pytest.mark.parametrize(
@@ -105,8 +105,8 @@ def test_other_ways_to_the_balance(answer):
     ],
 )
 def test_mistakes_with_the_balance(answer, hint):
-    assert not check("06.2", answer)
-    assert hint in check("06.2", answer).hint
+    assert not check("06.3", answer)
+    assert hint in check("06.3", answer).hint
 
 
 def along(force, move):
@@ -139,7 +139,7 @@ def tip(force, moves):
 
 @pytest.mark.parametrize("answer", [by_angle, best, lambda force, moves: (m := best(force, moves)) and np.array(m)])
 def test_other_ways_to_the_best_move(answer):
-    assert check("06.3", answer)
+    assert check("06.4", answer)
 
 
 @pytest.mark.parametrize(
@@ -160,5 +160,5 @@ def test_other_ways_to_the_best_move(answer):
     ],
 )
 def test_mistakes_with_the_best_move(answer, hint):
-    assert not check("06.3", answer)
-    assert hint in check("06.3", answer).hint
+    assert not check("06.4", answer)
+    assert hint in check("06.4", answer).hint

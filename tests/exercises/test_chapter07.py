@@ -46,12 +46,12 @@ def by_size(distance, keep, wind, normal, load):
     ],
 )
 def test_mistakes_with_the_price(answer, hint):
-    assert not check("07.1", answer)
-    assert hint in check("07.1", answer).hint
+    assert not check("07.2", answer)
+    assert hint in check("07.2", answer).hint
 
 
 def test_price_written_otherwise_is_right():
-    assert check("07.1", price)
+    assert check("07.2", price)
 
 
 RIGHT = ({"dead": 0, "light": 2, "moderate": 8, "heavy": 10}, {"none": 0, "mild": 6, "moderate": 10, "heavy": 14})
@@ -60,7 +60,7 @@ RIGHT = ({"dead": 0, "light": 2, "moderate": 8, "heavy": 10}, {"none": 0, "mild"
 def test_another_score_is_right():
     loads = {"dead": 0, "light": 1, "moderate": 4, "heavy": 5}
     disturbances = {"none": 0, "mild": 3, "moderate": 5, "heavy": 7}
-    assert check("07.2", lambda: (loads, disturbances, (2.5, 4.5, 7.5, 10.5)))
+    assert check("07.3", lambda: (loads, disturbances, (2.5, 4.5, 7.5, 10.5)))
 
 
 @pytest.mark.parametrize(
@@ -78,8 +78,8 @@ def test_another_score_is_right():
     ],
 )
 def test_mistakes_with_the_score(answer, hint):
-    assert not check("07.2", lambda: answer)
-    assert hint in check("07.2", lambda: answer).hint
+    assert not check("07.3", lambda: answer)
+    assert hint in check("07.3", lambda: answer).hint
 
 
 def walk(observed, predicted, step, hold, release, *, mistake=""):
@@ -119,7 +119,7 @@ def walk(observed, predicted, step, hold, release, *, mistake=""):
     ],
 )
 def test_mistakes_with_the_boundary(mistake, hint):
-    verdict = check("07.3", lambda *case: walk(*case, mistake=mistake))
+    verdict = check("07.4", lambda *case: walk(*case, mistake=mistake))
     assert not verdict
     assert hint in verdict.hint
 
@@ -135,12 +135,12 @@ def test_mistakes_with_the_boundary(mistake, hint):
     ],
 )
 def test_other_answers_for_the_boundary(answer, hint):
-    assert not check("07.3", answer)
-    assert hint in check("07.3", answer).hint
+    assert not check("07.4", answer)
+    assert hint in check("07.4", answer).hint
 
 
 def test_boundary_written_otherwise_is_right():
-    assert check("07.3", walk)
+    assert check("07.4", walk)
 
 
 def test_solutions_agree_with_the_example(solutions):

@@ -35,6 +35,15 @@ print("why it is so")
 
 # %%
 print(double(4))
+
+# %%
+### BEGIN SOLUTION
+four = double(2)
+choice = "b"
+### END SOLUTION
+
+# %% tags=["check"]
+assert choice == "b"
 '''
 
 
@@ -112,6 +121,17 @@ def test_exercise_has_no_answers(build, tmp_path, monkeypatch):
     assert "return 2 * x" not in text
     assert "why it is so" not in text
     assert "SOLUTION" not in text
+    assert exercise.cells[-2].source == "choice = ...  # your answer"
+
+
+def test_code_that_only_checks_or_draws_is_collapsed(build, tmp_path, monkeypatch):
+    run(build, monkeypatch)
+    cells = nbformat.read(tmp_path / "solutions" / "01_doubling.ipynb", as_version=4).cells
+    assert [cell.metadata.get("jupyter", {}).get("source_hidden", False) for cell in cells] == 5 * [False] + [True]
+    run(build, monkeypatch, "--html")
+    page = (tmp_path / "html" / "01_doubling.html").read_text(encoding="utf-8")
+    assert page.count('<details class="uavlab-folded"><summary>Code that checks</summary>') == 1
+    assert page.count('<details class="uavlab-folded">') == 1
 
 
 def test_building_twice_gives_the_same_bytes(build, tmp_path, monkeypatch):

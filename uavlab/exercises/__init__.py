@@ -1,8 +1,9 @@
 """Checks of the course's exercises: what is right, or what is wrong and why, without giving the answer away.
 
-`check("05.2", answer)` looks for exercise 2 of chapter 5. Each chapter is a module, each exercise a function of the
-answer that returns a hint, or nothing when the answer is right. What they share is in `uavlab.exercises`: the kinds of
-answers in `kinds`, known mistakes in `hints`, how a student's function is called in `watching`.
+`check("05.2", answer)` looks for exercise 2 of chapter 5. Each chapter is a module, each exercise a `Quiz`, or a
+function of the answer that returns a hint, or nothing when the answer is right. What they share is in
+`uavlab.exercises`: the kinds of answers in `kinds`, known mistakes in `hints`, how a student's function is called in
+`watching`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any
 
 from uavlab import checks
 from uavlab.exercises.done import Progress, progress
+from uavlab.exercises.kinds import Quiz
 from uavlab.exercises.watching import Watched, hint_from, shown
 
 __all__ = ["Progress", "Verdict", "check", "progress"]
@@ -24,12 +26,16 @@ class Verdict:
 
     number: str
     hint: str
+    because: str = ""
+    """Why a right answer is right, where that is worth a word."""
 
     def __bool__(self) -> bool:
         return not self.hint
 
     def __repr__(self) -> str:
-        return f"{self.number}: right" if self else f"{self.number}: not yet. {self.hint}"
+        if not self:
+            return f"{self.number}: not yet. {self.hint}"
+        return f"{self.number}: right. {self.because}" if self.because else f"{self.number}: right"
 
 
 def check(number: str, answer: Any) -> Verdict:
@@ -39,8 +45,9 @@ def check(number: str, answer: Any) -> Verdict:
     ----------
     number : str
         Chapter and exercise, as in "05.2".
-    answer : function
-        What the exercise asks for. It gets copies of its arguments, and may take five seconds a call.
+    answer : function, str, number or object
+        What the exercise asks for: mostly a function, which gets copies of its arguments, and may take five seconds a
+        call; the letter of a choice, as "b"; or a number or an object, where the exercise says so.
 
     Returns
     -------
@@ -54,8 +61,8 @@ def check(number: str, answer: Any) -> Verdict:
 
     Examples
     --------
-    >>> check("05.1", lambda dx, dy, dz: dx + dy + dz)
-    05.1: not yet. That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.
+    >>> check("05.2", lambda dx, dy, dz: dx + dy + dz)
+    05.2: not yet. That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.
     """
     number = checks.text("number", number)
     chapter, _, exercise = number.partition(".")
@@ -64,16 +71,25 @@ def check(number: str, answer: Any) -> Verdict:
         hint_for = getattr(module, f"exercise_{exercise}")
     except (ImportError, AttributeError):
         raise ValueError(f"number must be that of an exercise, as in '05.2', got {number!r}") from None
+    value = getattr(hint_for, "value", None)
     if answer is None or answer is ...:
-        return Verdict(number, "There is no answer yet: hand over your function.")
-    if not callable(answer):
+        is_function = value is None and not isinstance(hint_for, Quiz)
+        missing = "hand over your function" if is_function else "put yours in the place of the dots"
+        return Verdict(number, f"There is no answer yet: {missing}.")
+    if isinstance(hint_for, Quiz):
+        hint = hint_for.hint(answer)
+        return Verdict(number, hint, "" if hint else hint_for.because)
+    if value and (complaint := value(answer, ())):
+        return Verdict(number, f"You hand over {complaint}")
+    if not value and not callable(answer):
         return Verdict(number, "Hand over the function itself, without brackets, not what it returns.")
     watched = Watched(answer, getattr(hint_for, "kind", None), getattr(hint_for, "unchanged", False))
     try:
-        return Verdict(number, hint_from(hint_for, watched))
+        return Verdict(number, hint_for(answer) if value else hint_from(hint_for, watched))
     except Exception as problem:
+        led = "what you hand over" if value else f"what your function answered to {shown(watched.arguments)}"
         return Verdict(
             number,
             f"The check itself can't go on, with a {type(problem).__name__} ({problem}). That is its fault, not yours; "
-            f"what your function answered to {shown(watched.arguments)} led to it.",
+            f"{led} led to it.",
         )

@@ -39,8 +39,8 @@ same = partial(alike, absolute=1e-9)
 
 
 @asks_for(number("the force [N]"))
-def exercise_1(answer: Callable[..., float]) -> str:
-    """01.1: the force of rain."""
+def exercise_2(answer: Callable[..., float]) -> str:
+    """01.2: the force of rain."""
     given = [answer(*shower) for shower in SHOWERS]
     forces, right = np.asarray(given, dtype=float), [rain(*shower) for shower in SHOWERS]
     if same(forces, right):
@@ -56,8 +56,8 @@ def exercise_1(answer: Callable[..., float]) -> str:
 
 
 @asks_for(numbers((3,), "the force as a vector of three numbers: it has a direction"))
-def exercise_2(answer: Callable[..., Any]) -> str:
-    """01.2: drag as a vector."""
+def exercise_3(answer: Callable[..., Any]) -> str:
+    """01.3: drag as a vector."""
     states = [(np.array(wind), np.array(velocity), area, density) for wind, velocity, area, density in STATES]
     given = [answer(*state) for state in states]
     forces, right = np.asarray(given, dtype=float), [drag(*state) for state in states]
@@ -74,8 +74,8 @@ def exercise_2(answer: Callable[..., Any]) -> str:
 
 
 @asks_for(number("the heading [degrees], or None where none holds the course", none=True))
-def exercise_3(answer: Callable[..., float | None]) -> str:
-    """01.3: the heading that holds a course."""
+def exercise_4(answer: Callable[..., float | None]) -> str:
+    """01.4: the heading that holds a course."""
     cases = [(speed, np.array(wind), course) for speed, wind, course in COURSES]
     answers = [answer(*case) for case in cases]
     if all(angle is None for angle in answers):

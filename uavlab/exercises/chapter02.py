@@ -24,8 +24,8 @@ same_samples = partial(each_alike, same=np.array_equal)
 
 
 @asks_for(number("a probability, from 0 to 1"))
-def exercise_1(coverage_in_the_plane: Callable[[float], float]) -> str:
-    """02.1: the probability that an offset in the plane lies within k standard deviations."""
+def exercise_2(coverage_in_the_plane: Callable[[float], float]) -> str:
+    """02.2: the probability that an offset in the plane lies within k standard deviations."""
     answers = [coverage_in_the_plane(k) for k in RADII]
     if alike(answers, coverage(RADII, 2)):
         at_zero = coverage_in_the_plane(0.0)
@@ -69,8 +69,8 @@ PLANE_MISTAKES: list[tuple[Callable[[float], float], str]] = [
 
 
 @asks_for(number("the distance [m]"))
-def exercise_2(safe_distance: Callable[[float, float, Vector, Vector], float]) -> str:
-    """02.2: the distance to keep when gusts push in the plane, widened towards the wind."""
+def exercise_3(safe_distance: Callable[[float, float, Vector, Vector], float]) -> str:
+    """02.3: the distance to keep when gusts push in the plane, widened towards the wind."""
     calm = [(sigma, body, (0.0, 0.0), (1.0, 0.0)) for sigma in (0.5, 1.0, 2.0) for body in (0.4, 1.0)]
     angles = np.linspace(0.0, 2 * np.pi, 13)
     normals: list[Vector] = [(float(np.cos(angle)), float(np.sin(angle))) for angle in angles]
@@ -103,7 +103,7 @@ def widened_by(part: Callable[[Vector, Vector], float]) -> Callable[[float, floa
 CALM_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
     (
         lambda sigma, body: 3 * sigma + body / 2,
-        "You take 3σ. In the plane that leaves out 1.11 %, not 0.27 %: turn your formula of 02.1 round.",
+        "You take 3σ. In the plane that leaves out 1.11 %, not 0.27 %: turn your formula of 02.2 round.",
     ),
     (
         lambda sigma, body: pauta_radius(3) * sigma + body / 2,
@@ -153,8 +153,8 @@ WIND_MISTAKES: list[tuple[Callable[[float, float, Vector, Vector], float], str]]
 
 
 @asks_for(numbers((None,), "the array of the samples that are left"), unchanged=True)
-def exercise_3(without_gross_errors: Callable[[np.ndarray], np.ndarray]) -> str:
-    """02.3: the samples that are left when nothing lies beyond three standard deviations any more."""
+def exercise_4(without_gross_errors: Callable[[np.ndarray], np.ndarray]) -> str:
+    """02.4: the samples that are left when nothing lies beyond three standard deviations any more."""
     cases = contaminated_samples()
     answers = [np.asarray(without_gross_errors(samples)) for samples in cases]
     if any(answer.dtype == bool for answer in answers):

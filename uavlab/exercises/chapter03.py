@@ -54,8 +54,8 @@ same = partial(alike, relative=0, absolute=1e-6)
 
 
 @asks_for(number("a share, from 0 to 1"))
-def exercise_1(answer: Callable[[np.ndarray, np.ndarray], float]) -> str:
-    """03.1: the share of flights whose class was predicted too low."""
+def exercise_2(answer: Callable[[np.ndarray, np.ndarray], float]) -> str:
+    """03.2: the share of flights whose class was predicted too low."""
     true, predicted = FLIGHTS
     given = [answer(true, predicted), answer(true, true), answer(true, np.maximum(true - 1, 1))]
     shares, right = np.asarray(given, dtype=float), [2 / 12, 0.0, float((true > 1).mean())]
@@ -74,8 +74,8 @@ def exercise_1(answer: Callable[[np.ndarray, np.ndarray], float]) -> str:
 
 
 @asks_for(whole_number("the number of the class"))
-def exercise_2(answer: Callable[[float, float, int], int]) -> str:
-    """03.2: the class of the highest probability when the logarithm of the offset is normal."""
+def exercise_3(answer: Callable[[float, float, int], int]) -> str:
+    """03.3: the class of the highest probability when the logarithm of the offset is normal."""
     given = [answer(*weather) for weather in WEATHERS]
     classes, right = np.asarray(given, dtype=float), [most_probable(*weather) for weather in WEATHERS]
     if same(classes, right):
@@ -93,8 +93,8 @@ def exercise_2(answer: Callable[[float, float, int], int]) -> str:
 
 
 @asks_for(whole_number("the count, or -1 where none fits"))
-def exercise_3(answer: Callable[[float, int], int]) -> str:
-    """03.3: the count that a printed percentage belongs to, or -1."""
+def exercise_4(answer: Callable[[float, int], int]) -> str:
+    """03.4: the count that a printed percentage belongs to, or -1."""
     given = [answer(*case) for case in PRINTED]
     counts, right = np.asarray(given, dtype=float), [count_of(*case) for case in PRINTED]
     if same(counts, right):

@@ -32,8 +32,8 @@ same = partial(alike, relative=0, absolute=1e-6)
 
 
 @asks_for(numbers((3,), "three whole numbers: return i, j, k"))
-def exercise_1(answer: Callable[[int, tuple[int, int, int]], Sequence[int]]) -> str:
-    """04.1: from a node code back to its voxel."""
+def exercise_2(answer: Callable[[int, tuple[int, int, int]], Sequence[int]]) -> str:
+    """04.2: from a node code back to its voxel."""
     codes = range(math.prod(SHAPE))
     given = [answer(code, SHAPE) for code in codes]
     nx, ny, nz = SHAPE
@@ -63,8 +63,8 @@ def exercise_1(answer: Callable[[int, tuple[int, int, int]], Sequence[int]]) -> 
 
 
 @asks_for(number("the distance [m]"))
-def exercise_2(answer: Callable[[np.ndarray, np.ndarray, float], float]) -> str:
-    """04.2: the distance from any point to a voxel."""
+def exercise_3(answer: Callable[[np.ndarray, np.ndarray, float], float]) -> str:
+    """04.3: the distance from any point to a voxel."""
     given = [answer(np.array(point), np.array(voxel), cell) for point, voxel, cell in BOXES]
     distances, right = np.asarray(given, dtype=float), [box_distance(*case) for case in BOXES]
     if same(distances, right):
@@ -80,8 +80,8 @@ def exercise_2(answer: Callable[[np.ndarray, np.ndarray, float], float]) -> str:
 
 
 @asks_for(number("the clearance [m]"))
-def exercise_3(answer: Callable[[float, float], float]) -> str:
-    """04.3: the clearance that is certain in a street."""
+def exercise_4(answer: Callable[[float, float], float]) -> str:
+    """04.4: the clearance that is certain in a street."""
     given = [answer(gap, cell) for gap, cell in STREETS + ON_THE_WALL]
     clearances, right = np.asarray(given, dtype=float), [certain_clearance(*case) for case in STREETS + ON_THE_WALL]
     if same(clearances, right):

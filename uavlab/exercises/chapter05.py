@@ -25,8 +25,8 @@ MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if
 
 
 @asks_for(number("the length of the way [cells]"))
-def exercise_1(octile: Callable[[int, int, int], float]) -> str:
-    """05.1: the shortest way over 26 moves on an empty map, from the differences of the coordinates."""
+def exercise_2(octile: Callable[[int, int, int], float]) -> str:
+    """05.2: the shortest way over 26 moves on an empty map, from the differences of the coordinates."""
     sorted_ahead = [(5, 3, 1), (7, 7, 2), (9, 4, 4), (6, 0, 0), (3, 3, 3), (8, 2, 0), (0, 0, 0)]
     if is_octile(octile, sorted_ahead):
         shuffled = [order for offset in sorted_ahead for order in itertools.permutations(offset)]
@@ -89,8 +89,8 @@ OCTILE_MISTAKES: list[tuple[Callable[[int, int, int], float], str]] = [
 
 
 @asks_for(truth("whether the move is legal"))
-def exercise_2(legal: Callable[[np.ndarray, Move, Move], bool]) -> str:
-    """05.2: whether a move is legal: every voxel of its bounding box lies in the map and is free."""
+def exercise_3(legal: Callable[[np.ndarray, Move, Move], bool]) -> str:
+    """05.3: whether a move is legal: every voxel of its bounding box lies in the map and is free."""
     rng = np.random.default_rng(62)
     maps = [rng.random((5, 5, 5)) < share for share in (0.1, 0.2, 0.3)]
     cases = [
@@ -215,8 +215,8 @@ TRAPS: list[tuple[Graph, str, Callable[[Any], float], float, str]] = [
 
 
 @asks_for(number("the cost of the cheapest way, math.inf where there is none"))
-def exercise_3(search: Callable[[Graph, Any, Any, Callable[[Any], float]], float]) -> str:
-    """05.3: the cost of the cheapest way through a graph, by an A* that is right."""
+def exercise_4(search: Callable[[Graph, Any, Any, Callable[[Any], float]], float]) -> str:
+    """05.4: the cost of the cheapest way through a graph, by an A* that is right."""
     for roads, goal, estimate_of, right, hint in TRAPS:
         cost = search(roads, "a", goal, estimate_of)
         if cost != right:

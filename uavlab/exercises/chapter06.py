@@ -27,8 +27,8 @@ MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if
 
 
 @asks_for(numbers((3,), "the force, a vector of three numbers, also where it is zero"))
-def exercise_1(push_of_voxel: Callable[..., np.ndarray]) -> str:
-    """06.1: the force of one voxel on a UAV at a point."""
+def exercise_2(push_of_voxel: Callable[..., np.ndarray]) -> str:
+    """06.2: the force of one voxel on a UAV at a point."""
     rng = np.random.default_rng(71)
     lows = rng.integers(-5, 5, (60, 3))
     offsets = rng.uniform(-4, 4, (60, 3))
@@ -125,8 +125,8 @@ PUSH_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
 
 
 @asks_for(number("the distance [m]"))
-def exercise_2(balance: Callable[[float, float, float], float]) -> str:
-    """06.2: the distance at which pull and push cancel, in front of a wall."""
+def exercise_3(balance: Callable[[float, float, float], float]) -> str:
+    """06.3: the distance at which pull and push cancel, in front of a wall."""
     questions = [
         (1.0, 5.0, 5.0), (2.0, 5.0, 5.0), (1.0, 500.0, 5.0), (1.0, 5.0, 12.0), (0.3, 80.0, 2.5), (40.0, 0.7, 3.0),
     ]  # fmt: skip
@@ -179,8 +179,8 @@ BALANCE_MISTAKES: list[tuple[Callable[[float, float, float], float], str]] = [
 
 
 @asks_for(numbers((3,), "one of the moves that you are given, or None", none=True))
-def exercise_3(best_move: Callable[[Vector, list[Move]], Any]) -> str:
-    """06.3: the legal move with the smallest angle to the force, or None."""
+def exercise_4(best_move: Callable[[Vector, list[Move]], Any]) -> str:
+    """06.4: the legal move with the smallest angle to the force, or None."""
     rng = np.random.default_rng(73)
     forces = rng.standard_normal((200, 3)) * 10 ** rng.uniform(-2, 2, (200, 1))
     legal = [[MOVES[n] for n in rng.permutation(26)[: rng.integers(3, 26)]] for _ in forces]

@@ -30,8 +30,8 @@ WINDY = [(d, 5.5, (0.4, -0.1), normal, 0.6) for d in (1.5, 3.5, 4.5) for normal 
 
 
 @asks_for(number("the price of a metre"))
-def exercise_1(price: Price) -> str:
-    """07.1: the price of a metre near a wall, with wind and load."""
+def exercise_2(price: Price) -> str:
+    """07.2: the price of a metre near a wall, with wind and load."""
     in_calm = [price(*case) for case in CALM]
     if not alike(in_calm, [right_price(*case) for case in CALM]):
         without_wind = [(d, keep, load) for d, keep, _, _, load in CALM]
@@ -125,8 +125,8 @@ WIND_MISTAKES: list[tuple[Price, str]] = [
 
 
 @asks_for(parts(3, "points by load, points by disturbance, and four thresholds"))
-def exercise_2(score: Callable[[], tuple[Mapping[str, float], Mapping[str, float], Sequence[float]]]) -> str:
-    """07.2: points for loads and disturbances and thresholds that give Table 3."""
+def exercise_3(score: Callable[[], tuple[Mapping[str, float], Mapping[str, float], Sequence[float]]]) -> str:
+    """07.3: points for loads and disturbances and thresholds that give Table 3."""
     answer = score()
     loads, disturbances, thresholds = answer
     if not all(isinstance(points, Mapping) for points in (loads, disturbances)) or not isinstance(thresholds, Sequence):
@@ -159,8 +159,8 @@ def exercise_2(score: Callable[[], tuple[Mapping[str, float], Mapping[str, float
 
 
 @asks_for(numbers(lambda offsets, *_: (len(offsets),), "a list with a boundary for each offset"))
-def exercise_3(boundaries: Callable[[Sequence[float], float, float, int, float], Sequence[float]]) -> str:
-    """07.3: the boundary after each offset, raised at once and lowered with hysteresis."""
+def exercise_4(boundaries: Callable[[Sequence[float], float, float, int, float], Sequence[float]]) -> str:
+    """07.4: the boundary after each offset, raised at once and lowered with hysteresis."""
     cases = [[1, 2.7, 1, 1, 1, 1], *([float(o) for o in offsets_seen(seed)] for seed in range(6))]
     answers = [np.asarray(boundaries(case, 2.0, 0.5, 3, 0.8), dtype=float) for case in cases]
     same = partial(each_alike, same=np.allclose)

@@ -64,12 +64,12 @@ def progress(folder: str | PathLike[str] = ".") -> Progress:
     >>> import json, tempfile
     >>> from pathlib import Path
     >>> from uavlab import exercises
-    >>> answered = {"cell_type": "code", "source": 'exercises.check("05.1", octile)',
-    ...             "outputs": [{"data": {"text/plain": "05.1: right"}}]}
+    >>> answered = {"cell_type": "code", "source": 'exercises.check("05.2", octile)',
+    ...             "outputs": [{"data": {"text/plain": "05.2: right"}}]}
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = (Path(folder) / "mine.ipynb").write_text(json.dumps({"cells": [answered]}))
     ...     exercises.progress(folder).right
-    ('05.1',)
+    ('05.2',)
     """
     place = Path(checks.path("folder", folder))
     if not place.is_dir():

@@ -1,12 +1,13 @@
 """What an exercise asks for: one number, a whole one, True or False, an array of a shape. Looked at before all else.
 
-Each function here returns a check of one answer: of what the student's function returned, and of its arguments. It
-says in words what is there instead, or nothing.
+Each function here returns a check of one answer: of what the student's function returned, and of its arguments, or of
+what was handed over without a function. It says in words what is there instead, or nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sized
+from collections.abc import Callable, Mapping, Sized
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,13 +26,46 @@ def asks_for(kind: Kind, *, unchanged: bool = False) -> Callable[[Callable], Cal
     return decorated
 
 
+def asks_for_value(kind: Kind) -> Callable[[Callable], Callable]:
+    """Decorates an exercise whose answer is no function but a value: a number that was read off, a route."""
+
+    def decorated(exercise: Callable) -> Callable:
+        exercise.value = kind  # type: ignore[attr-defined]
+        return exercise
+
+    return decorated
+
+
+@dataclass(frozen=True)
+class Quiz:
+    """A question with choices, one of them right; each wrong one has words of its own."""
+
+    right: str
+    """The letter of the right choice."""
+    because: str
+    """Why it is right: said to those who found it."""
+    wrong: Mapping[str, str]
+    """Letter of each other choice, and what is wrong with it."""
+
+    def hint(self, answer: Any) -> str:
+        """What is wrong with an answer, or nothing."""
+        letters = sorted([self.right, *self.wrong])
+        asked = ", ".join(f'"{letter}"' for letter in letters[:-1]) + f' or "{letters[-1]}"'
+        if not isinstance(answer, str):
+            return f"You hand over {described(answer)}. The answer is one letter in quotes: {asked}."
+        letter = answer.strip(" .()").lower()
+        if letter not in letters:
+            return f"You hand over {described(answer)}. There are the choices {asked}."
+        return self.wrong.get(letter, "")
+
+
 def number(meaning: str, *, none: bool = False) -> Kind:
     """One number, also as an array without axes; or None, where that is an answer."""
 
     def complaint(value: Any, arguments: tuple) -> str:
         if (value is None and none) or is_number(value):
             return ""
-        return f"{returned(value)}. The answer is one number: {meaning}."
+        return f"{described(value)}. The answer is one number: {meaning}."
 
     return complaint
 
@@ -43,9 +77,9 @@ def whole_number(meaning: str, *, none: bool = False) -> Kind:
         if value is None and none:
             return ""
         if not is_number(value):
-            return f"{returned(value)}. The answer is one whole number: {meaning}."
+            return f"{described(value)}. The answer is one whole number: {meaning}."
         if not float(value).is_integer():
-            return f"your function returns {float(value):g}. The answer is a whole number: {meaning}."
+            return f"{float(value):g}. The answer is a whole number: {meaning}."
         return ""
 
     return complaint
@@ -57,7 +91,7 @@ def truth(meaning: str) -> Kind:
     def complaint(value: Any, arguments: tuple) -> str:
         if isinstance(value, bool | np.bool_) or (is_number(value) and float(value) in (0.0, 1.0)):
             return ""
-        return f"{returned(value)}. The answer is True or False: {meaning}."
+        return f"{described(value)}. The answer is True or False: {meaning}."
 
     return complaint
 
@@ -68,7 +102,7 @@ def parts(count: int, meaning: str) -> Kind:
     def complaint(value: Any, arguments: tuple) -> str:
         if isinstance(value, tuple | list) and len(value) == count:
             return ""
-        return f"{returned(value)}. The answer has {count} parts: {meaning}."
+        return f"{described(value)}. The answer has {count} parts: {meaning}."
 
     return complaint
 
@@ -84,7 +118,16 @@ def numbers(shape: Shape, meaning: str, *, none: bool = False) -> Kind:
         alike = found is not None and len(found) == len(wanted)
         if alike and all(w is None or f == w for f, w in zip(found or (), wanted, strict=True)):
             return ""
-        return f"{returned(value)}. The answer is {meaning}."
+        return f"{described(value)}. The answer is {meaning}."
+
+    return complaint
+
+
+def thing(wanted: type, meaning: str) -> Kind:
+    """An object of a class, such as a `Route`."""
+
+    def complaint(value: Any, arguments: tuple) -> str:
+        return "" if isinstance(value, wanted) else f"{described(value)}. The answer is {meaning}."
 
     return complaint
 
@@ -105,26 +148,24 @@ def shape_of(value: Any) -> tuple[int, ...] | None:
     return array.shape if array.dtype.kind in "iufb" else None
 
 
-def returned(value: Any) -> str:
-    """What a function returned, in words."""
+def described(value: Any) -> str:
+    """A value in words, as in "…" or "you hand over …"."""
     if value is None:
-        return "your function returns nothing: it needs a line with `return`"
+        return "nothing: it needs a line with `return`"
     if isinstance(value, str | bytes):
-        return f"your function returns text, {str(value)[:40]!r}"
+        return f"text, {str(value)[:40]!r}"
     if isinstance(value, bool | np.bool_):
-        return f"your function returns {bool(value)}"
+        return f"{bool(value)}"
     if is_number(value):
-        return f"your function returns one number, {float(value):.4g}"
+        return f"one number, {float(value):.4g}"
     if isinstance(value, np.ndarray):
-        return f"your function returns an array of shape {value.shape}" + (
-            " of truth values" if value.dtype == bool else ""
-        )
+        return f"an array of shape {value.shape}" + (" of truth values" if value.dtype == bool else "")
     if callable(value):
-        return "your function returns a function"
+        return "a function"
     if isinstance(value, list | tuple | dict | set):
         name = {list: "list", tuple: "tuple", dict: "dictionary", set: "set"}.get(type(value), type(value).__name__)
         shape = shape_of(value)
         inner = f" of shape {shape}" if shape is not None and len(shape) > 1 else f" of {len(value)}"
-        return f"your function returns a {name}{inner}"
+        return f"a {name}{inner}"
     size = f" of {len(value)}" if isinstance(value, Sized) else ""
-    return f"your function returns a {type(value).__name__}{size}"
+    return f"a {type(value).__name__}{size}"

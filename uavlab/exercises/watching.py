@@ -61,9 +61,8 @@ class Watched:
         finally:
             self.began = None
         if self.kind and (complaint := self.kind(value, arguments)):
-            raise WrongKindError(
-                f"For {shown(arguments)} {complaint}" if arguments else complaint[:1].upper() + complaint[1:]
-            )
+            who = f"For {shown(arguments)} your" if arguments else "Your"
+            raise WrongKindError(f"{who} function returns {complaint}")
         if self.unchanged and not same(own, arguments):
             raise WrongKindError(
                 f"For {shown(arguments)} your function changes an array that it is given. Work on a copy: the caller "

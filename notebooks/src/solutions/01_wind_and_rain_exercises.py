@@ -21,7 +21,7 @@ import numpy as np
 from uavlab import exercises
 
 # %% [markdown]
-# ## 01.1 The force of rain
+# ## 01.2 The force of rain
 #
 # Rain of `rain_mm_per_h` falls on an area of `area` m². Its drops come down with `drop_speed` m/s and bounce back with
 # the share `restitution` of that speed (0: they stick). A cubic metre of water has 1000 kg. How hard does the rain
@@ -39,14 +39,14 @@ def rain_newtons(rain_mm_per_h, area, drop_speed, restitution):
 
 
 # %%
-exercises.check("01.1", rain_newtons)
+exercises.check("01.2", rain_newtons)
 
 # %% tags=["solution"]
-assert exercises.check("01.1", rain_newtons)
+assert exercises.check("01.2", rain_newtons)
 print(f"100 mm/h on 0.1 m²: {rain_newtons(100, 0.1, 9, 0):.3f} N")
 
 # %% [markdown]
-# ## 01.2 Drag, with a direction
+# ## 01.3 Drag, with a direction
 #
 # `wind` and `velocity` are arrays (east, north, up) in m/s: where the air moves to, and where the UAV moves over
 # ground. `drag_area` is $C S$ in m², `density` that of the air in kg/m³. With which force, as an array in newtons,
@@ -63,15 +63,15 @@ def drag(wind, velocity, drag_area, density):
 
 
 # %%
-exercises.check("01.2", drag)
+exercises.check("01.3", drag)
 
 # %% tags=["solution"]
-assert exercises.check("01.2", drag)
+assert exercises.check("01.3", drag)
 wind, velocity = np.array([4.0, 3.0, 0.0]), np.array([0.0, 6.0, 0.0])
 print("flying north in a wind to the north-east:", drag(wind, velocity, 0.06, 1.225).round(2), "N")
 
 # %% [markdown]
-# ## 01.3 The heading that holds a course
+# ## 01.4 The heading that holds a course
 #
 # A UAV flies through the air with `air_speed` m/s. `wind` is an array (east, north) in m/s, where the air moves to.
 # Into which direction must it fly through the air, so that over ground it moves along `course`? Both directions are
@@ -92,8 +92,8 @@ def heading(air_speed, wind, course):
 
 
 # %%
-exercises.check("01.3", heading)
+exercises.check("01.4", heading)
 
 # %% tags=["solution"]
-assert exercises.check("01.3", heading)
+assert exercises.check("01.4", heading)
 print(f"course 90°, wind of 9 m/s to the south: heading {heading(18.0, np.array([0.0, -9.0]), 90.0):.0f}°")

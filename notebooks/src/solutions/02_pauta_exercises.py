@@ -21,7 +21,7 @@ import numpy as np
 from uavlab import exercises
 
 # %% [markdown]
-# ## 02.1 How much does the plane hold?
+# ## 02.2 How much does the plane hold?
 #
 # Offsets on two axes are Gaussian and independent, with mean 0 and the same $\sigma$. Write the probability, from 0 to
 # 1, that the offset lies within a circle of $k\sigma$ around the route. On one axis it would be
@@ -38,14 +38,14 @@ def coverage_in_the_plane(k):
 
 
 # %%
-exercises.check("02.1", coverage_in_the_plane)
+exercises.check("02.2", coverage_in_the_plane)
 
 # %% tags=["solution"]
-assert exercises.check("02.1", coverage_in_the_plane)
+assert exercises.check("02.2", coverage_in_the_plane)
 print(f"3σ holds {coverage_in_the_plane(3):.3%}")
 
 # %% [markdown]
-# ## 02.2 The distance to keep, in the plane and with wind
+# ## 02.3 The distance to keep, in the plane and with wind
 #
 # Write the least distance between route and wall [m] for a UAV that gusts push about in the plane, with the same
 # `sigma` [m] on both axes. 99.73 % of the offsets are to be survived, whatever their direction: the radius $k$ is that
@@ -61,22 +61,22 @@ def safe_distance(sigma, uav_diameter, mean_offset, normal):
     """Least distance to keep from a wall [m], for gusts in the plane and a steady wind."""
     ### BEGIN SOLUTION
     share = math.erf(3 / math.sqrt(2))  # what 3σ holds on one axis, 99.73 %
-    k = math.sqrt(-2 * math.log(1 - share))  # 02.1 turned round: 3.439
+    k = math.sqrt(-2 * math.log(1 - share))  # 02.2 turned round: 3.439
     away_from_wall = np.dot(mean_offset, normal)
     return k * sigma + uav_diameter / 2 + max(0.0, -away_from_wall)
     ### END SOLUTION
 
 
 # %%
-exercises.check("02.2", safe_distance)
+exercises.check("02.3", safe_distance)
 
 # %% tags=["solution"]
-assert exercises.check("02.2", safe_distance)
+assert exercises.check("02.3", safe_distance)
 for mean_offset in ((0.0, 0.0), (-1.0, 0.0), (1.0, 0.0)):
     print(f"wall in the west, mean offset {mean_offset} m: keep {safe_distance(1.0, 1.0, mean_offset, (1, 0)):.2f} m")
 
 # %% [markdown]
-# ## 02.3 The Pauta filter by hand
+# ## 02.4 The Pauta filter by hand
 #
 # Write the filter for gross errors. `samples` is an array of offsets on one axis. Compute the mean and the standard
 # deviation (with $n - 1$) of the samples that are left, remove all that are farther than $3\sigma$ from the mean, on
@@ -98,10 +98,10 @@ def without_gross_errors(samples):
 
 
 # %%
-exercises.check("02.3", without_gross_errors)
+exercises.check("02.4", without_gross_errors)
 
 # %% tags=["solution"]
-assert exercises.check("02.3", without_gross_errors)
+assert exercises.check("02.4", without_gross_errors)
 rng = np.random.default_rng(23)
 left = without_gross_errors(np.concatenate([rng.normal(0, 1, 60), [9.0, 30.0, 200.0]]))
 print(f"{len(left)} samples left, σ = {left.std(ddof=1):.2f} m")

@@ -22,7 +22,7 @@ from scipy.stats import norm
 from uavlab import exercises
 
 # %% [markdown]
-# ## 03.1 How often is a model too low?
+# ## 03.2 How often is a model too low?
 #
 # `true` and `predicted` are arrays of classes, one for each flight. Return the share of all flights whose class was
 # predicted too low, from 0 to 1: those on which the planner kept too small a distance.
@@ -37,14 +37,14 @@ def under_prediction(true, predicted):
 
 
 # %%
-exercises.check("03.1", under_prediction)
+exercises.check("03.2", under_prediction)
 
 # %% tags=["solution"]
-assert exercises.check("03.1", under_prediction)
+assert exercises.check("03.2", under_prediction)
 print(f"{under_prediction([1, 2, 3, 4], [1, 3, 2, 4]):.0%} of the four flights")
 
 # %% [markdown]
-# ## 03.2 The most probable class
+# ## 03.3 The most probable class
 #
 # The offset of a flight is $\xi = \tilde\xi\, e^{s\,\varepsilon}$ with a standard normal $\varepsilon$; `median` is
 # $\tilde\xi$ in metres and `spread` is $s$. Class 1 holds all offsets up to 1 m, class 2 those above 1 and up to 2 m,
@@ -64,14 +64,14 @@ def most_probable_class(median, spread, class_count):
 
 
 # %%
-exercises.check("03.2", most_probable_class)
+exercises.check("03.3", most_probable_class)
 
 # %% tags=["solution"]
-assert exercises.check("03.2", most_probable_class)
+assert exercises.check("03.3", most_probable_class)
 print("median 4.6 m: class", most_probable_class(4.6, 0.3, 6), "of 6,", most_probable_class(4.6, 0.3, 12), "of 12")
 
 # %% [markdown]
-# ## 03.3 Can it be a count?
+# ## 03.4 Can it be a count?
 #
 # A paper prints an accuracy of `percent`, rounded to three decimals, on a test of `samples` flights. If it is a share
 # of them, some number of right answers $k$ gives exactly this figure: 100 k / samples, rounded to three decimals.
@@ -88,9 +88,9 @@ def right_answers(percent, samples):
 
 
 # %%
-exercises.check("03.3", right_answers)
+exercises.check("03.4", right_answers)
 
 # %% tags=["solution"]
-assert exercises.check("03.3", right_answers)
+assert exercises.check("03.4", right_answers)
 for percent in (9.424, 59.426, 72.852):
     print(f"{percent} % of 1466:", right_answers(percent, 1466))

@@ -24,7 +24,7 @@ from uavlab.city import City, table1_city
 city = table1_city()
 
 # %% [markdown]
-# ## 04.1 From a code back to its voxel
+# ## 04.2 From a code back to its voxel
 #
 # Eq. 4 of the chapter gives each voxel one number, $n = k + n_z\,(j + n_y\,i)$. A planner that has found its goal
 # holds a chain of such numbers, and has to turn each into a place again. Undo the formula, with whole-number
@@ -44,15 +44,15 @@ def node_index(code, shape):
 
 
 # %%
-exercises.check("04.1", node_index)
+exercises.check("04.2", node_index)
 
 # %% tags=["solution"]
-assert exercises.check("04.1", node_index)
+assert exercises.check("04.2", node_index)
 assert node_index(37, (4, 5, 6)) == (1, 1, 1)
 assert node_index(901_830, city.shape) == tuple(city.index_of(901_830)) == (90, 18, 30)
 
 # %% [markdown]
-# ## 04.2 The distance to a voxel
+# ## 04.3 The distance to a voxel
 #
 # The clearance of Eq. 5 is measured from the centre of a voxel. A UAV is seldom there. Write the distance from
 # **any** point to the nearest surface of one voxel, in metres. Voxel $(a, b, e)$ covers $[a, a+1) \times [b, b+1)
@@ -73,24 +73,24 @@ def box_clearance(point, voxel, cell):
 
 
 # %%
-exercises.check("04.2", box_clearance)
+exercises.check("04.3", box_clearance)
 
 # %% tags=["solution"]
-assert exercises.check("04.2", box_clearance)
+assert exercises.check("04.3", box_clearance)
 
 # %% [markdown]
 # Once it is right, it should agree with the library: the smallest distance from a node to any of the occupied voxels
 # is `city.clearance`.
 
 # %%
-if exercises.check("04.2", box_clearance):
+if exercises.check("04.3", box_clearance):
     coarse, node = table1_city(4.0), (9, 1, 12)
     nearest = min(box_clearance(coarse.center_of(node), voxel, coarse.cell) for voxel in np.argwhere(coarse.occupied))
     print(f"yours {nearest:.3f} m, the library's {coarse.clearance[node]:.3f} m")
     assert math.isclose(nearest, coarse.clearance[node])
 
 # %% [markdown]
-# ## 04.3 How much of a street is left?
+# ## 04.4 How much of a street is left?
 #
 # Two long, high walls stand `gap` metres apart, across the x axis. The map takes the papers' rule: a voxel is occupied
 # when its centre lies in a wall (`voxels="centres"`). You don't choose where the grid begins, so expect the worst. How
@@ -115,15 +115,15 @@ def street_clearance(gap, cell):
 
 
 # %%
-exercises.check("04.3", street_clearance)
+exercises.check("04.4", street_clearance)
 
 # %% tags=["solution"]
-assert exercises.check("04.3", street_clearance)
+assert exercises.check("04.4", street_clearance)
 assert [cell for cell in (0.5, 1.0, 2.0, 4.0) if street_clearance(10.0, cell) >= 3.5] == [0.5, 1.0]
 assert street_clearance(10.0, 3.0) > street_clearance(10.0, 2.0)  # coarser is not always worse
 
 # %%
-if exercises.check("04.3", street_clearance):
+if exercises.check("04.4", street_clearance):
     for cell in (0.5, 1.0, 2.0, 3.0, 4.0):
         print(f"street of 10 m, voxels of {cell:g} m: {street_clearance(10.0, cell):.2f} m are certain")
 

@@ -22,7 +22,7 @@ import numpy as np
 from uavlab import exercises
 
 # %% [markdown]
-# ## 05.1 The octile distance
+# ## 05.2 The octile distance
 #
 # Write the length of the shortest way over 26 moves on an empty map, in cells. `dx`, `dy` and `dz` are the
 # differences of the coordinates between node and goal: whole numbers, of any sign and in any order. Straight moves
@@ -40,14 +40,14 @@ def octile(dx, dy, dz):
 
 
 # %%
-exercises.check("05.1", octile)
+exercises.check("05.2", octile)
 
 # %% tags=["solution"]
-assert exercises.check("05.1", octile)
+assert exercises.check("05.2", octile)
 print(f"octile(5, -3, 1) = {octile(5, -3, 1):.3f}")
 
 # %% [markdown]
-# ## 05.2 Which moves are legal?
+# ## 05.3 Which moves are legal?
 #
 # `occupied` is an array of the whole map, `True` where there is an obstacle. `node` is a free voxel `(i, j, k)`,
 # `move` one of the 26 moves, each part $-1$, $0$ or $1$. A move is legal when every voxel of its bounding box lies on
@@ -68,17 +68,17 @@ def legal(occupied, node, move):
 
 
 # %%
-exercises.check("05.2", legal)
+exercises.check("05.3", legal)
 
 # %% tags=["solution"]
-assert exercises.check("05.2", legal)
+assert exercises.check("05.3", legal)
 occupied = np.zeros((3, 3, 3), dtype=bool)
 occupied[2, 1, 1] = True
 moves = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) != (0, 0, 0)]
 print(f"beside one obstacle {sum(legal(occupied, (1, 1, 1), move) for move in moves)} of 26 moves are legal")
 
 # %% [markdown]
-# ## 05.3 Repair an A*
+# ## 05.4 Repair an A*
 #
 # A* works on any graph: `graph[place][neighbour]` is the length of a road, `estimate(place)` a consistent estimate of
 # the way from there to the goal. The `search` below has been in use for years, and it is wrong in two places. Look at
@@ -139,9 +139,9 @@ def repaired(graph, start, goal, estimate):
 
 
 # %%
-exercises.check("05.3", repaired)
+exercises.check("05.4", repaired)
 
 # %% tags=["solution"]
-assert exercises.check("05.3", repaired)
+assert exercises.check("05.4", repaired)
 print("cost of the repaired search:", repaired(roads, "harbour", "castle", left.get))
 assert repaired(roads, "harbour", "castle", left.get) == 7

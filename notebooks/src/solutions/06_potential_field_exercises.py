@@ -19,7 +19,7 @@ import numpy as np
 from uavlab import exercises
 
 # %% [markdown]
-# ## 06.1 The push of one voxel
+# ## 06.2 The push of one voxel
 #
 # An obstacle is a cube with edges of 1 m; `low` is its lowest corner, so it reaches to `low + 1` on all three axes. It
 # pushes a UAV at `point` away from the point of the cube that is nearest to it, with the size
@@ -43,14 +43,14 @@ def push_of_voxel(point, low, push, reach):
 
 
 # %%
-exercises.check("06.1", push_of_voxel)
+exercises.check("06.2", push_of_voxel)
 
 # %% tags=["solution"]
-assert exercises.check("06.1", push_of_voxel)
+assert exercises.check("06.2", push_of_voxel)
 print("2 m east of a voxel:", push_of_voxel((3.0, 0.5, 0.5), (0, 0, 0), push=5.0, reach=5.0))
 
 # %% [markdown]
-# ## 06.2 Where a wall stops the UAV
+# ## 06.3 Where a wall stops the UAV
 #
 # The goal lies behind a wall, straight across. The wall pushes from its nearest point alone, with the size above, and
 # the goal pulls with the constant size `pull`. Return the distance from the wall at which the two cancel [m]. Any
@@ -73,15 +73,15 @@ def balance(pull, push, reach):
 
 
 # %%
-exercises.check("06.2", balance)
+exercises.check("06.3", balance)
 
 # %% tags=["solution"]
-assert exercises.check("06.2", balance)
+assert exercises.check("06.3", balance)
 for push in (5.0, 500.0, 50_000.0):
     print(f"k_rep = {push:>7,.0f}, R = 5 m: it stops {balance(1.0, push, 5.0):.2f} m from the wall")
 
 # %% [markdown]
-# ## 06.3 The best move
+# ## 06.4 The best move
 #
 # On the lattice the UAV takes the move that points best along the force. `force` is a vector (3,), `moves` a list of
 # the legal moves, each `(i, j, k)` with parts $-1$, $0$ or $1$. Return the move whose *direction* makes the smallest
@@ -103,8 +103,8 @@ def best_move(force, moves):
 
 
 # %%
-exercises.check("06.3", best_move)
+exercises.check("06.4", best_move)
 
 # %% tags=["solution"]
-assert exercises.check("06.3", best_move)
+assert exercises.check("06.4", best_move)
 print("force (3, 1, 0):", best_move((3, 1, 0), [(1, 0, 0), (1, 1, 0), (1, 1, 1), (0, 1, 0)]))

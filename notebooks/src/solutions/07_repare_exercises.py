@@ -21,7 +21,7 @@ import numpy as np
 from uavlab import exercises
 
 # %% [markdown]
-# ## 07.1 The price of a metre
+# ## 07.2 The price of a metre
 #
 # Write the price of a metre at a `distance` [m] from a wall: Eq. 5 of the notebook, with $\omega_0 = 2$,
 # $\vartheta_F = \vartheta_G = 1$ and $F_\text{tra} = 1$. The size of the wall's push is that of Eq. 1. `wind` is
@@ -42,15 +42,15 @@ def price(distance, safe_distance, wind, normal, load_ratio):
 
 
 # %%
-exercises.check("07.1", price)
+exercises.check("07.2", price)
 
 # %% tags=["solution"]
-assert exercises.check("07.1", price)
+assert exercises.check("07.2", price)
 for wind in ((-0.4, 0.0), (0.0, 0.4), (0.4, 0.0)):
     print(f"wall in the west, wind {wind}: {price(3.5, 5.5, wind, (1, 0), 0.6):.2f}")
 
 # %% [markdown]
-# ## 07.2 Table 3 as a score
+# ## 07.3 Table 3 as a score
 #
 # Find points for each load and each disturbance, and four thresholds, so that the sum of the two points gives Table 3:
 # a sum below the first threshold is "off", from the first on "lower", from the second "intermediate", from the third
@@ -69,16 +69,16 @@ def score():
 
 
 # %%
-exercises.check("07.2", score)
+exercises.check("07.3", score)
 
 # %% tags=["solution"]
-assert exercises.check("07.2", score)
+assert exercises.check("07.3", score)
 loads, disturbances, thresholds = score()
 for disturbance, points in disturbances.items():
     print(f"{disturbance:<9}", *(f"{points + more:3d}" for more in loads.values()))
 
 # %% [markdown]
-# ## 07.3 A boundary that doesn't flutter
+# ## 07.4 A boundary that doesn't flutter
 #
 # Once a second an offset [m] is observed. The boundary begins at `predicted`. Write the boundaries that hold after
 # each observation, as a list:
@@ -109,8 +109,8 @@ def boundaries(observed, predicted, step, hold, release):
 
 
 # %%
-exercises.check("07.3", boundaries)
+exercises.check("07.4", boundaries)
 
 # %% tags=["solution"]
-assert exercises.check("07.3", boundaries)
+assert exercises.check("07.4", boundaries)
 print(boundaries([1, 2.7, 1, 1, 1, 1], predicted=2, step=0.5, hold=3, release=0.8))
