@@ -616,7 +616,8 @@ CALLS = {
         "features": FEATURES, "class_count": 6, "quantile": 0.875, "training": predictor().training,
     },
     "prediction.OffsetPredictor.fit": lambda: {
-        "self": predictor(), "features": table()[0], "offsets": table()[1], "drop_nan": False,
+        "self": predictor(), "features": table()[0], "offsets": table()[1],
+        "groups": np.arange(len(table()[1])) // 4, "drop_nan": False,
     },
     "prediction.OffsetPredictor.predict_probabilities": lambda: {"self": predictor(), "features": table()[0]},
     "prediction.OffsetPredictor.predict_class": lambda: {"self": predictor(), "features": table()[0]},

@@ -116,6 +116,7 @@ RIGHTFUL = {
     "route.Route.none.elapsed": {EVERYTHING},  # a note
     "planners.compare_planners.seeds": {"3 inside"},  # a seed
     "prediction.compare_models.seeds": {"3 inside"},
+    "prediction.OffsetPredictor.fit.groups": {"halves", "texts", "negative", "10**12"},  # any labels
     "planners.pareto_front.lengths": {"one number", "3", "3 inside", "a half", "a float", "one in a list", "a list"},
     "planners.flight_conditions.disturbance": {"a word"},  # has a class of wind
     "planners.repare.disturbance": {"a word"},

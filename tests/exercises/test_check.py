@@ -7,6 +7,7 @@ import time
 from collections import Counter
 
 import numpy as np
+import pandas as pd
 import pytest
 from solved import CHOICES, EXERCISES, FUNCTIONS, SOURCES, VALUES, solutions_of
 
@@ -228,6 +229,23 @@ def test_arguments_are_the_answer_s_own():
         return 0.5 * density * area * np.linalg.norm(wind) * wind
 
     assert exercises.check("01.3", drag)
+
+
+def test_tables_are_the_answer_s_own(monkeypatch):
+    table = pd.DataFrame({"wind_speed": [1.0, 2.0]})
+
+    def doubled(given):
+        given["wind_speed"] *= 2
+        return given["wind_speed"].sum()
+
+    def exercise(answer):
+        return "" if answer(table) == 6.0 else "wrong"
+
+    monkeypatch.setattr("uavlab.exercises.chapter05.exercise_2", exercise)
+    assert exercises.check("05.2", doubled)
+    assert list(table["wind_speed"]) == [1.0, 2.0]
+    exercise.unchanged = True
+    assert "changes an array" in exercises.check("05.2", doubled).hint
 
 
 def test_what_the_check_does_wrong_is_not_blamed_on_the_answer(monkeypatch):

@@ -100,6 +100,8 @@ def test_visible_cells_hold_ideas_and_no_tests(chapter):
         if cell.cell_type != "code":
             continue
         assert "NBVAL" not in cell.source
+        lost = re.search(r"^# ?(#|>|\||- |\$\$)", cell.source, re.MULTILINE)
+        assert not lost, f"Markdown in a code cell: {cell.source[lost.start() :][:80]}"
         if "check" in tags(cell):
             assert "assert" in cell.source or "nbval-check-output" in tags(cell)
         elif "figure" not in tags(cell):

@@ -47,6 +47,38 @@ def test_rounded_up_offset_is_seldom_exceeded():
     assert np.mean(exceeded) == pytest.approx(0.05, abs=0.012)  # before rounding up: what 95 % means
 
 
+def days_of_one_kind(rng, count=60, flights=10):
+    """Days with a noise of their own, which the weather gives away, but only on days that one knows."""
+    weather = np.repeat(rng.random(count), flights)
+    noise = np.repeat(rng.standard_normal(count), flights)
+    return pd.DataFrame({"wind_speed": weather}), np.exp(noise), np.repeat(np.arange(count), flights)
+
+
+@pytest.mark.parametrize("as_text", [False, True])
+def test_flights_of_a_day_are_left_out_together(as_text):
+    features, offsets, day = days_of_one_kind(np.random.default_rng(1))
+    unknown, reached, _ = days_of_one_kind(np.random.default_rng(2), count=400, flights=1)
+    alone = OffsetPredictor(("wind_speed",)).fit(features, offsets)
+    together = OffsetPredictor(("wind_speed",)).fit(features, offsets, groups=day.astype(str) if as_text else day)
+    exceeded = [np.mean(np.log(reached) > p.log_offset(unknown) + p.fitted.margin) for p in (alone, together)]
+    assert exceeded[0] > 0.3  # "5 %"
+    assert exceeded[1] < 0.08
+
+
+@pytest.mark.parametrize(
+    ("groups", "words"),
+    [
+        ([1, 2, 3], r"groups must have shape \(60,\), a label for each row, got \(3,\)"),
+        (np.arange(60) // 20, "groups must have at least 4 different labels, got 3"),
+        (np.where(np.arange(60) == 5, np.nan, 1.0), "none missing"),
+        ([None, *range(59)], "none missing"),
+    ],
+)
+def test_wrong_groups(some, groups, words):
+    with pytest.raises(ValueError, match=words):
+        OffsetPredictor().fit(*some, groups=groups)
+
+
 def test_class_offset_and_sigma_belong_together(predictor, data):
     hours = data.features[data.train].iloc[:500]
     probabilities = predictor.predict_probabilities(hours)

@@ -85,8 +85,8 @@ class Watched:
 
 
 def copied(value: Any) -> Any:
-    """Arrays, lists, tuples, dictionaries and sets anew, whatever is in them too; all else as it is."""
-    if isinstance(value, np.ndarray):
+    """Arrays, tables, lists, tuples, dictionaries and sets anew, whatever is in them too; all else as it is."""
+    if isinstance(value, np.ndarray) or type(value).__module__.startswith("pandas."):
         return value.copy()
     if isinstance(value, dict):
         return {key: copied(one) for key, one in value.items()}
@@ -99,6 +99,8 @@ def same(one: Any, other: Any) -> bool:
     """Whether two arguments, or all in them, are the same."""
     if isinstance(one, np.ndarray):
         return np.array_equal(one, other)
+    if type(one).__module__.startswith("pandas."):
+        return one.equals(other)
     if type(one) in (list, tuple):
         return len(one) == len(other) and all(map(same, one, other))
     return True

@@ -102,7 +102,9 @@ MODELS: Mapping[str, Model] = {
 }
 
 
-def fit_log_offset(features: pandas.DataFrame, offsets: npt.ArrayLike) -> tuple[Any, np.ndarray]:
+def fit_log_offset(
+    features: pandas.DataFrame, offsets: npt.ArrayLike, groups: npt.ArrayLike | None = None
+) -> tuple[Any, np.ndarray]:
     """An XGBoost regression of ln ξ, and its residuals on rows that it hadn't learned from.
 
     Parameters
@@ -111,17 +113,21 @@ def fit_log_offset(features: pandas.DataFrame, offsets: npt.ArrayLike) -> tuple[
         N rows.
     offsets : (N,) array
         ξ [m], above 0.
+    groups : (N,) array, optional
+        Labels of rows that belong together, such as their day; at least 4 different ones.
 
     Returns
     -------
     xgboost.XGBRegressor, (N,) array
-        The residuals ln ξ − prediction are from cross-validation in 4 parts, so a little larger than the noise.
+        The residuals ln ξ − prediction are from cross-validation in 4 parts, no group in two of them, so a little
+        larger than the noise.
     """
     selection = require("sklearn.model_selection", "prediction")
     model = require("xgboost", "prediction").XGBRegressor(**TREES, **FIXED)
     target = np.log(np.asarray(offsets, dtype=float))
-    parts = selection.KFold(FOLDS, shuffle=True, random_state=0)
-    residuals = target - selection.cross_val_predict(model, features, target, cv=parts)
+    shuffled = selection.KFold(FOLDS, shuffle=True, random_state=0)
+    parts = shuffled if groups is None else selection.GroupKFold(FOLDS)
+    residuals = target - selection.cross_val_predict(model, features, target, groups=groups, cv=parts)
     return model.fit(features, target), residuals
 
 

@@ -28,7 +28,7 @@ from uavlab.prediction.generator import (
     missing_values,
     offset_class,
 )
-from uavlab.prediction.models import fit_log_offset
+from uavlab.prediction.models import FOLDS, fit_log_offset
 from uavlab.requirements import require
 
 ATTRIBUTE = "uavlab_offset_predictor"
@@ -125,8 +125,14 @@ class OffsetPredictor:
         counts = f"{names}, {self.class_count} classes, quantile {self.quantile:g}"
         return f"<OffsetPredictor of {counts}, {state}>"
 
-    def fit(self, features: Any, offsets: npt.ArrayLike, *, drop_nan: bool = False) -> OffsetPredictor:
+    def fit(
+        self, features: Any, offsets: npt.ArrayLike, *, groups: npt.ArrayLike | None = None, drop_nan: bool = False
+    ) -> OffsetPredictor:
         """A predictor that has learned from these flights.
+
+        How far offsets are from their prediction is measured on flights that were left out. Flights that share more
+        than their features, as those of one day do, have to be left out together: say so with `groups`, or the
+        quantile is too low.
 
         Parameters
         ----------
@@ -134,6 +140,9 @@ class OffsetPredictor:
             N rows, at least 20, with the predictor's columns.
         offsets : (N,) array
             ξ [m], above 0.
+        groups : (N,) array, optional
+            Which flights belong together: a label for each, such as its day; at least 4 different ones. By default no
+            two do.
         drop_nan : bool
             Leave out rows with NaN or infinite values instead of refusing the table.
 
@@ -146,7 +155,8 @@ class OffsetPredictor:
         ------
         ValueError
             If `features` lacks a column or has too few rows, `offsets` are not above 0, all equal or not one for each
-            row, either has a value that is no number (and `drop_nan` is False), or `drop_nan` is not True or False.
+            row, either has a value that is no number (and `drop_nan` is False), `groups` has not a label for each row,
+            or too few different ones, or `drop_nan` is not True or False.
 
         See Also
         --------
@@ -167,19 +177,24 @@ class OffsetPredictor:
             raise ValueError(
                 f"offsets must have shape ({len(table)},), one for each row of features, got {reached.shape}"
             )
+        labels = None if groups is None else checked_groups(groups, len(table))
         joined = table.assign(offsets=reached)
         wrong = missing_values(joined)
         if wrong and not drop_nan:
             raise ValueError(f"features and offsets: {wrong}; drop_nan=True leaves these rows out")
         whole = np.isfinite(joined.to_numpy()).all(axis=1)
         table, reached = table[whole], reached[whole]
+        if labels is not None:
+            labels = labels[whole]
+            if (different := len(np.unique(labels))) < FOLDS:
+                raise ValueError(f"groups must have at least {FOLDS} different labels, got {different}")
         if not (reached > 0).all():
             raise ValueError(f"offsets must be above 0 [m], got {reached.min():g}")
         if len(table) < MIN_ROWS:
             raise ValueError(f"features must have at least {MIN_ROWS} whole rows, got {len(table)}")
         if np.ptp(reached) == 0:
             raise ValueError(f"offsets must differ, all are {reached[0]:g} m: there is nothing to learn")
-        model, residuals = fit_log_offset(table, reached)
+        model, residuals = fit_log_offset(table, reached, labels)
         ranges = {name: (float(table[name].min()), float(table[name].max())) for name in self.features}
         margin = float(np.quantile(residuals, self.quantile))
         return replace(self, training=Training(model.get_booster(), float(residuals.std()), margin, ranges))
@@ -504,6 +519,17 @@ class OffsetPredictor:
                 f"unknown: {', '.join(unknown) or 'none, but their order differs'}"
             )
         return loaded
+
+
+def checked_groups(groups: Any, count: int) -> np.ndarray:
+    """A label for each of so many rows: numbers, dates or texts."""
+    labels = np.asarray(groups)
+    if labels.shape != (count,):
+        raise ValueError(f"groups must have shape ({count},), a label for each row, got {labels.shape}")
+    without = np.ma.is_masked(groups) or (labels != labels).any()  # NaN and NaT are unequal to themselves
+    if without or labels.dtype.kind not in "biufMmUS":
+        raise ValueError("groups must be numbers, dates or texts, one for each row and none missing")
+    return labels
 
 
 def checked_names(features: tuple[str, ...]) -> tuple[str, ...]:
