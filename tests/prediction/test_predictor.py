@@ -56,13 +56,13 @@ def days_of_one_kind(rng, count=60, flights=10):
 
 @pytest.mark.parametrize("as_text", [False, True])
 def test_flights_of_a_day_are_left_out_together(as_text):
-    features, offsets, day = days_of_one_kind(np.random.default_rng(1))
+    features, offsets, day = days_of_one_kind(np.random.default_rng(1), count=300, flights=4)
     unknown, reached, _ = days_of_one_kind(np.random.default_rng(2), count=400, flights=1)
     alone = OffsetPredictor(("wind_speed",)).fit(features, offsets)
     together = OffsetPredictor(("wind_speed",)).fit(features, offsets, groups=day.astype(str) if as_text else day)
     exceeded = [np.mean(np.log(reached) > p.log_offset(unknown) + p.fitted.margin) for p in (alone, together)]
     assert exceeded[0] > 0.3  # "5 %"
-    assert exceeded[1] < 0.08
+    assert exceeded[1] < 0.09
 
 
 @pytest.mark.parametrize(

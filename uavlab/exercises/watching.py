@@ -86,7 +86,7 @@ class Watched:
 
 def copied(value: Any) -> Any:
     """Arrays, tables, lists, tuples, dictionaries and sets anew, whatever is in them too; all else as it is."""
-    if isinstance(value, np.ndarray) or type(value).__module__.startswith("pandas."):
+    if isinstance(value, np.ndarray) or is_table(value):
         return value.copy()
     if isinstance(value, dict):
         return {key: copied(one) for key, one in value.items()}
@@ -95,11 +95,16 @@ def copied(value: Any) -> Any:
     return value
 
 
+def is_table(value: Any) -> bool:
+    """Whether a value is one of pandas, which isn't imported for it."""
+    return type(value).__module__.partition(".")[0] == "pandas"
+
+
 def same(one: Any, other: Any) -> bool:
     """Whether two arguments, or all in them, are the same."""
     if isinstance(one, np.ndarray):
         return np.array_equal(one, other)
-    if type(one).__module__.startswith("pandas."):
+    if is_table(one):
         return one.equals(other)
     if type(one) in (list, tuple):
         return len(one) == len(other) and all(map(same, one, other))
