@@ -56,7 +56,7 @@ def days_of_one_kind(rng, count=60, flights=10):
 
 @pytest.mark.parametrize("as_text", [False, True])
 def test_flights_of_a_day_are_left_out_together(as_text):
-    features, offsets, day = days_of_one_kind(np.random.default_rng(1), count=300, flights=4)
+    features, offsets, day = days_of_one_kind(np.random.default_rng(1), count=100, flights=20)
     unknown, reached, _ = days_of_one_kind(np.random.default_rng(2), count=400, flights=1)
     alone = OffsetPredictor(("wind_speed",)).fit(features, offsets)
     together = OffsetPredictor(("wind_speed",)).fit(features, offsets, groups=day.astype(str) if as_text else day)
