@@ -33,6 +33,7 @@ FOLDED = {"check": "Code that checks", "figure": "Code of the figure"}
 """Tags of cells whose code is out of the reader's way, and what stands in its place."""
 STYLE = """
 .uavlab-folded > summary { margin-left: 64px; color: var(--jp-ui-font-color2); cursor: pointer; font-size: 12px }
+.jp-InputArea-editor, .jp-OutputArea-output { overflow-x: auto }
 .jp-MarkdownOutput blockquote { border-left: 4px solid #0072b2; background: #0072b210; padding: 6px 12px }
 .jp-MarkdownOutput blockquote > :last-child { margin-bottom: 0 }
 """

@@ -102,9 +102,9 @@ def test_run_all_runs_every_cell_and_draws_the_scene(browser, lab, course, pictu
         assert share_of_hue(picture, building.color) > 0.003, building.name
     picture_of(page, "-lab")
 
-    sliders = page.locator(".uavlab-sliders")
+    sliders = page.locator(".uavlab-sliders").last
     sliders.scroll_into_view_if_needed()
-    cell = page.locator(".jp-Notebook-cell", has=sliders)
+    cell = page.locator(".jp-Notebook-cell", has=page.locator(".uavlab-sliders")).last
     for key, frame in (("End", 3), ("ArrowLeft", 2), ("Home", 0)):
         sliders.get_by_role("slider", name="wind").press(key)
         sliders.locator(f'canvas[data-frame="{frame}"]').wait_for(timeout=10_000)
