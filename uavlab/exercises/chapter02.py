@@ -1,4 +1,4 @@
-"""Exercises of chapter 2, the Pauta criterion: coverage in the plane, the distance to keep, and the filter by hand.
+"""Exercises of chapter 2, the Pauta criterion: what 3σ promises, in the plane and over a flight, and when it fails.
 
 A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
 by how they are written.
@@ -12,15 +12,26 @@ from functools import partial
 
 import numpy as np
 
-from uavlab.exercises.hints import alike, each_alike, recognised
-from uavlab.exercises.kinds import asks_for, number, numbers
-from uavlab.offsets import coverage, minimum_safe_distance, pauta_filter, pauta_radius
+from uavlab.exercises.hints import alike, recognised
+from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, number, numbers
+from uavlab.offsets import collision_probability, coverage, minimum_safe_distance, pauta_filter, pauta_radius
 
 Vector = tuple[float, float]
 RADII = (0.5, 1.0, 2.0, 3.0, 4.0)
 
 same_distances = partial(alike, relative=2e-4)  # the radius may be rounded to 3.439
-same_samples = partial(each_alike, same=np.array_equal)
+same_times = partial(alike, relative=2e-3, absolute=1e-3)
+
+exercise_1 = Quiz(
+    right="b",
+    because="One side of one axis at one moment: half of 0.27 %. How many flights touch depends on how long they are.",
+    wrong={
+        "a": "99.73 % counts moments, not flights. A flight has many moments, and touches if one of them is bad.",
+        "c": "0.27 % counts both sides. What does an offset away from the wall do?",
+        "d": "A Gaussian has no end: 1 moment in 741 lies beyond 3σ on that side. Calling it an error doesn't stop it.",
+    },
+)
+"""02.1: what 3σ promises beside a wall."""
 
 
 @asks_for(number("a probability, from 0 to 1"))
@@ -31,8 +42,8 @@ def exercise_2(coverage_in_the_plane: Callable[[float], float]) -> str:
         at_zero = coverage_in_the_plane(0.0)
         return "" if math.isclose(at_zero, 0.0, abs_tol=1e-9) else "A circle of radius 0 holds nothing."
     return recognised(answers, PLANE_MISTAKES, [(k,) for k in RADII], alike) or (
-        f"For k = 3 you get {float(answers[3]):.4f}. Cut the circle into rings: how large is the ring from r to "
-        "r + dr, and how high is the density on it?"
+        f"For k = 3 you get {float(answers[3]):.4f}. Cut the circle into rings: how large is the ring from s to "
+        "s + ds, and how high is the density on it?"
     )
 
 
@@ -47,7 +58,7 @@ PLANE_MISTAKES: list[tuple[Callable[[float], float], str]] = [
     ),
     (
         lambda k: float(coverage(k, 3)),
-        "That is the ball in space. The plane has two axes.",
+        "That is the ball in three dimensions. The plane has two axes.",
     ),
     (
         lambda k: math.exp(-(k**2) / 2),
@@ -55,7 +66,7 @@ PLANE_MISTAKES: list[tuple[Callable[[float], float], str]] = [
     ),
     (
         lambda k: 1 - math.exp(-(k**2)),
-        "Almost: which power of e is in the Gaussian density, −r² or −r²/2?",
+        "Almost: which power of e is in the Gaussian density, −s² or −s²/2?",
     ),
     (
         lambda k: k * math.exp(-(k**2) / 2),
@@ -107,7 +118,7 @@ CALM_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
     ),
     (
         lambda sigma, body: pauta_radius(3) * sigma + body / 2,
-        "You take the radius of a ball in space. These gusts push in the plane.",
+        "You take the radius of a ball in three dimensions. These gusts push in the plane.",
     ),
     (
         lambda sigma, body: pauta_radius(2) * sigma + body,
@@ -135,7 +146,7 @@ WIND_MISTAKES: list[tuple[Callable[[float, float, Vector, Vector], float], str]]
     ),
     (
         widened_by(lambda mean, normal: -float(np.dot(mean, normal))),
-        "Towards the wall it is right. Where the wind blows away you make the distance smaller: it may turn.",
+        "Towards the wall it is right. Where the wind blows away you make the distance smaller: it may drop.",
     ),
     (
         widened_by(lambda mean, normal: float(np.dot(mean, normal))),
@@ -152,104 +163,160 @@ WIND_MISTAKES: list[tuple[Callable[[float, float, Vector, Vector], float], str]]
 ]
 
 
-@asks_for(numbers((None,), "the array of the samples that are left"), unchanged=True)
-def exercise_4(without_gross_errors: Callable[[np.ndarray], np.ndarray]) -> str:
-    """02.4: the samples that are left when nothing lies beyond three standard deviations any more."""
-    cases = contaminated_samples()
-    answers = [np.asarray(without_gross_errors(samples)) for samples in cases]
-    if any(answer.dtype == bool for answer in answers):
-        return "You return a mask. The answer is the samples themselves: index the array with the mask."
-    right = [samples[pauta_filter(samples).kept] for samples in cases]
-    if same_samples(answers, right):
-        return ""
-    if hint := recognised(answers, FILTER_MISTAKES, [(samples,) for samples in cases], same_samples):
-        return hint
-    if same_samples([np.sort(answer, axis=None) for answer in answers], [np.sort(samples) for samples in right]):
-        return "These are the right samples in another order. Keep the order in which they were taken."
-    wrong = next(i for i, answer in enumerate(answers) if not np.array_equal(answer, right[i]))
-    return (
-        f"Of {len(cases[wrong])} samples {len(right[wrong])} should be left, you keep {answers[wrong].size}. Print "
-        "mean, σ and the number of samples in each round."
-    )
+@asks_for(number("the time [s]"))
+def exercise_4(longest_time: Callable[[float, float, float, float, float], float]) -> str:
+    """02.4: how long a UAV may fly beside a wall, so that it touches it with at most a given chance."""
+    usual = [
+        (distance, 1.0, 1.0, omega, chance)
+        for distance in (4.5, 5.0, 5.5)
+        for omega in (1.0, 2.0)
+        for chance in (0.01, 0.3)
+    ]
+    wider = [(6.0, 0.6, 1.3, 0.7, 0.02), (3.0, 0.4, 0.6, 1.4, 0.05), (9.0, 2.0, 1.7, 1.0, 0.01)]
+    near = [(distance, 1.0, 1.0, 1.0, chance) for distance, chance in ((1.8, 0.2), (2.0, 0.3), (1.5, 0.5))]
+    hopeless = [(3.5, 1.0, 1.0, 1.0, 0.001), (1.0, 1.0, 1.0, 1.0, 0.1)]
+    answers = [longest_time(*case) for case in [*usual, *wider, *near]]
+    if not same_times(answers, [seconds_until(*case) for case in [*usual, *wider, *near]]):
+        if same_times(answers[: len(usual)], [seconds_until(*case) for case in usual]) and not same_times(
+            answers[: len(usual) + len(wider)], [seconds_until(*case) for case in [*usual, *wider]]
+        ):
+            return "It is right for a body of 1 m and σ = 1 m, and wrong for others: where do they enter?"
+        if same_times(answers, [-seconds_until(*case) for case in [*usual, *wider, *near]]):
+            return "The sign is the wrong way round: ln(a/b) is −ln(b/a)."
+        return recognised(answers, TIME_MISTAKES, [*usual, *wider, *near], same_when_above_0) or (
+            f"At 5 m, for a body of 1 m, σ = 1 m, 1 rad/s and a chance of 0.01, you get {float(answers[4]):.4g} s; put "
+            "that time into Eq. 15, and see which chance comes out."
+        )
+    too_near = [float(longest_time(*case)) for case in hopeless]
+    if any(seconds != 0.0 for seconds in too_near):
+        return (
+            f"For {hopeless[0]} you get {too_near[0]:.3g} s. There one moment is already likelier to touch than is "
+            "allowed: the answer is 0."
+        )
+    return ""
 
 
-def contaminated_samples() -> list[np.ndarray]:
-    """Offsets with gross errors: on one side, on both, around a mean that isn't 0, and none; and a few in doubt."""
-    rng = np.random.default_rng(23)
-    cases = []
-    for mean, errors in (
-        (0.0, (7.0, 25.0, 90.0, 400.0)),
-        (0.5, (-6.0, 8.0, -30.0, 45.0, 200.0, -250.0)),
-        (40.0, (20.0, 60.0, 300.0)),
-        (-3.0, (-15.0, -60.0)),
-    ):
-        good = np.clip(rng.normal(mean, 1.0, 80), mean - 2.2, mean + 2.2)
-        samples = np.concatenate([good, errors])
-        cases.append(samples[rng.permutation(len(samples))])
-    few = np.append(np.tile([0.64, -0.64], 5), 10.0)  # 10 is beyond 3σ with n, and within with n − 1
-    return [*cases, np.linspace(-1.0, 1.0, 20), few]
+def seconds_until(distance: float, body: float, sigma: float, omega: float, chance: float) -> float:
+    """Eq. 15 solved for the time [s]; negative where one moment is too much."""
+    z = (distance - body / 2) / sigma
+    return inside(z) / crossings(z, omega) * math.log(inside(z) / (1 - chance))
 
 
-def one_round(samples: np.ndarray) -> np.ndarray:
-    return samples[np.abs(samples - samples.mean()) <= 3 * samples.std(ddof=1)]
+def same_when_above_0(some: list[float], others: list[float]) -> bool:
+    """Whether times are the same; what is negative may have been made 0."""
+    return same_times(np.maximum(some, 0.0), np.maximum(others, 0.0))
 
 
-def around_zero(samples: np.ndarray) -> np.ndarray:
-    while len(samples) and (far := np.abs(samples) > 3 * samples.std(ddof=1)).any():
-        samples = samples[~far]
-    return samples
+def inside(z: float) -> float:
+    return 0.5 * math.erfc(-z / math.sqrt(2))
 
 
-def upper_side(samples: np.ndarray) -> np.ndarray:
-    while (far := samples - samples.mean() > 3 * samples.std(ddof=1)).any():
-        samples = samples[~far]
-    return samples
+def crossings(z: float, omega: float) -> float:
+    return omega / (2 * math.pi) * math.exp(-(z**2) / 2)
 
 
-def two_sigma(samples: np.ndarray) -> np.ndarray:
-    while (far := np.abs(samples - samples.mean()) > 2 * samples.std(ddof=1)).any():
-        samples = samples[~far]
-    return samples
+def by_bound(distance: float, body: float, sigma: float, omega: float, chance: float) -> float:
+    z = (distance - body / 2) / sigma
+    return (chance - 1 + inside(z)) / crossings(z, omega)
 
 
-def with_n(samples: np.ndarray) -> np.ndarray:
-    while (far := np.abs(samples - samples.mean()) > 3 * samples.std()).any():
-        samples = samples[~far]
-    return samples
+def without_start(distance: float, body: float, sigma: float, omega: float, chance: float) -> float:
+    return -math.log(1 - chance) / crossings((distance - body / 2) / sigma, omega)
 
 
-def errors_only(samples: np.ndarray) -> np.ndarray:
-    return samples[~pauta_filter(samples).kept]
+def without_share(distance: float, body: float, sigma: float, omega: float, chance: float) -> float:
+    z = (distance - body / 2) / sigma
+    return math.log(inside(z) / (1 - chance)) / crossings(z, omega)
 
 
-FILTER_MISTAKES: list[tuple[Callable[[np.ndarray], np.ndarray], str]] = [
+TIME_MISTAKES: list[tuple[Callable[[float, float, float, float, float], float], str]] = [
     (
-        with_n,
-        "Of many samples the right ones are left, of few one too few: your σ divides by n, which NumPy does unless "
-        "told otherwise. The exercise asks for n − 1.",
+        lambda distance, body, *others: seconds_until(distance, 0.0, *others),
+        "You leave the body out. The route is that of its centre: how much of it is on the wall's side?",
     ),
     (
-        one_round,
-        "That is one round. The largest errors widened the σ that the others were judged by: what is σ now?",
+        lambda distance, body, *others: seconds_until(distance, 2 * body, *others),
+        "You take away the whole body. The route is that of its centre: only half of it is on the wall's side.",
     ),
     (
-        around_zero,
-        "You measure from 0. The mean of the offsets isn't 0 when there is wind: measure from the mean.",
+        lambda *case: seconds_until(*case) / (2 * math.pi),
+        "You cross 2π times as often as Rice does. `omega` is in rad/s: how many turns per second is that?",
     ),
     (
-        upper_side,
-        "Right on the upper side. A sample can be too far below the mean as well.",
+        without_start,
+        "You take 1 − exp(−νt) for the chance. A flight may be in the wall at its very start: look at q in Eq. 15.",
     ),
     (
-        two_sigma,
-        "You cut at 2σ. That takes one good sample in twenty, in every round; the criterion says 3σ.",
+        without_share,
+        "Almost: in Eq. 15 the power of e is −νt/q, and you take −νt. It matters where the wall is near.",
     ),
     (
-        errors_only,
-        "You return the gross errors. The answer is what is left without them.",
-    ),
-    (
-        lambda samples: samples,
-        "You keep everything. What is farther from the mean than three standard deviations has to go.",
+        by_bound,
+        "That is the bound (1 − q) + νt. It is safe, but for large chances it is shorter than it need be: use the left "
+        "side of Eq. 15.",
     ),
 ]
+
+
+@asks_for_value(number("a share of all samples, from 0 to 1"))
+def exercise_5(share: float) -> str:
+    """02.5: from which share of wrong samples in one place on the filter finds none of them."""
+    share = float(share)
+    if 0.095 <= share <= 0.105:
+        return ""
+    if 9.5 <= share <= 10.5:
+        return "Right, in per cent. Give it as a number from 0 to 1."
+    if not 0 < share < 1:
+        return f"A share of all samples lies between 0 and 1, and {share:g} doesn't."
+    if abs(share - 1 / 9) < 0.002:
+        return "That is wrong samples over good ones, 1 in 9. The question is for their share of all samples."
+    if abs(share - 0.5) < 0.01:
+        return "Half is what a median bears. This filter uses a mean and a σ, which the errors drag along: try 0.4."
+    if abs(share - 0.0027) < 0.0002:
+        return "0.27 % is how many *good* samples the filter removes. Vary the share of the wrong ones."
+    seen = share_found(share)
+    if seen > 0:
+        return f"With {share:.3g} of the samples wrong, the filter still finds {seen:.0%} of them: go higher."
+    return f"With {share:.3g} the filter is blind indeed, but it is so earlier: go lower until it finds some."
+
+
+def share_found(share: float) -> float:
+    """Of gross errors that all lie at 1000 m, by the filter, among 10 000 samples."""
+    wrong = min(max(round(10_000 * share), 1), 9_990)
+    good = np.random.default_rng(25).normal(0.0, 1.0, 10_000 - wrong)
+    return float(1 - pauta_filter(np.append(good, np.full(wrong, 1000.0))).kept[len(good) :].mean())
+
+
+@asks_for_value(numbers((2,), "two numbers: the distance from the western wall [m] and the speed [m/s]"))
+def exercise_6(plan: Vector) -> str:
+    """02.6: where and how fast to fly through a street with wind across."""
+    from_west, speed = (float(part) for part in plan)
+    if not 0.5 < from_west < 11.5:
+        return f"At {from_west:g} m from the western wall, a body of 1 m doesn't fit between the walls, 12 m apart."
+    if not 0 < speed <= 5:
+        return f"The speed must be above 0 and at most 5 m/s, you fly {speed:g} m/s."
+    west, east = touches(from_west, speed)
+    if west + east <= 0.001:
+        return ""
+    where = f"{1000 * west:.3g} in the west and {1000 * east:.3g} in the east"
+    said = f"{1000 * (west + east):.3g} of 1000 flights touch, {where}."
+    if sum(touches(5.0, speed)) > 0.001:
+        return (
+            f"{said} No route is good enough at {speed:g} m/s: how does the chance change with the time in the street?"
+        )
+    if abs(from_west - 6) < 0.05:
+        return f"{said} You fly in the middle of the street. Where does the wind hold the UAV then?"
+    if from_west > 6:
+        return (
+            f"{said} You fly nearer to the eastern wall, and the wind pushes east, too. (`from_west` is from the west.)"
+        )
+    return f"{said} Which wall is the worse one? Move away from it until both are equally likely."
+
+
+def touches(from_west: float, speed: float) -> Vector:
+    """Chances to touch the western and the eastern wall, by Eq. 15."""
+    west, east = (
+        float(collision_probability(distance, 1.2, 300.0 / speed, 1.0, uav_diameter=1.0, mean_away=away))
+        for distance, away in ((from_west, 1.0), (12.0 - from_west, -1.0))
+    )
+    return west, east
