@@ -775,7 +775,7 @@ CALLS = {
     "weather.mean_wind": lambda: {"samples": np.array([1.0, 2.0, 4.0]), "interval": 1.0, "averaging_time": 2.0},
     "weather.mean_wind_limit": lambda: {
         "uav": DRONE, "rain": 0.5, "ground_speed": 2.0, "air_density": 1.25, "safety_factor": 1.125,
-        "gust_factor": 1.75,
+        "gust_factor": 1.75, "keep_speed": False,
     },
     "weather.rain_force": lambda: {
         "rain_mm_per_h": 2.0, "area": 0.125, "drop_speed": 8.0, "restitution": 0.25, "as_printed": False,

@@ -88,6 +88,20 @@ def test_a_load_that_leaves_no_thrust_slows_the_uav_down():
     assert reason == f"head wind: 6.0 m/s of {held:.1f} m/s air speed leave less than 10 m/s"
 
 
+def test_against_the_gust_the_ground_speed_comes_on_top():
+    for load, limit in ((0.0, 11.7), (0.6, 10.1), (0.85, 9.0)):
+        uav = LIGHT_QUADROTOR.loaded(load)
+        kept = float(mean_wind_limit(uav, ground_speed=5, keep_speed=True))
+        drag = wind_drag((-1.75 * kept, 0.0), (5.0, 0.0), uav.drag_area)[0]
+        assert kept == pytest.approx(limit, abs=0.05)
+        assert -drag == pytest.approx(uav.horizontal_reserve())
+        assert kept < mean_wind_limit(uav, ground_speed=5)
+    assert mean_wind_limit(uav, keep_speed=True) == mean_wind_limit(uav)  # the same in hover
+    assert mean_wind_limit(uav, ground_speed=30, keep_speed=True) == 0
+    light = mean_wind_limit(LIGHT_QUADROTOR, ground_speed=15, keep_speed=True)
+    assert light == pytest.approx(3.0)  # the top speed binds
+
+
 def test_mean_wind_limit_over_rain_and_air():
     limits = mean_wind_limit(LIGHT_QUADROTOR, [[0.0], [5.0]], air_density=np.array([1.0, 1.2, 1.3]))
     assert limits.shape == (2, 3)

@@ -126,13 +126,16 @@ def mean_wind_limit(
     air_density: npt.ArrayLike = STANDARD_AIR,
     safety_factor: float = SAFETY_FACTOR,
     gust_factor: float = GUST_FACTOR,
+    keep_speed: bool = False,
 ) -> np.ndarray:
     """Strongest mean wind, from any side, in which the UAV can fly its mission.
 
     The least of two: the gust that it holds over the gust factor, and the air speed that it reaches less the ground
-    speed that it needs. That air speed is the top speed, or less when the load leaves no thrust for it.
+    speed that it needs. That air speed is the top speed, or less when the load leaves no thrust for it. The top speed
+    limits steady flight; for the seconds of a gust the thrust alone counts.
 
-    W = min(V/g, min(V, V_top) − V_d), V of `wind_limit`, g the gust factor.
+    W = min(V/G, min(V, V_top) − V_d), V of `wind_limit`, G the gust factor: a gust may slow the UAV down to a halt and
+    never pushes it back. With `keep_speed` it flies on against the gust: (V − V_d)/G in place of V/G.
 
     Parameters
     ----------
@@ -144,6 +147,8 @@ def mean_wind_limit(
         Speed to hold over ground V_d [m/s], at least 0; 0 for hovering.
     gust_factor : float
         Strongest gust over mean wind, at least 1.
+    keep_speed : bool
+        Whether it holds the ground speed against the strongest gust, too.
 
     Returns
     -------
@@ -153,8 +158,8 @@ def mean_wind_limit(
     Raises
     ------
     ValueError
-        If `uav` is no UAV, `ground_speed` or `rain` is negative, `air_density` is not above 0, or `gust_factor` or
-        `safety_factor` is below 1.
+        If `uav` is no UAV, `ground_speed` or `rain` is negative, `air_density` is not above 0, `gust_factor` or
+        `safety_factor` is below 1, or `keep_speed` is not True or False.
 
     See Also
     --------
@@ -167,12 +172,15 @@ def mean_wind_limit(
     >>> from uavlab.weather import mean_wind_limit
     >>> [round(float(mean_wind_limit(LIGHT_QUADROTOR, ground_speed=speed)), 1) for speed in (0.0, 5.0, 15.0)]
     [14.5, 13.0, 3.0]
+    >>> f"{mean_wind_limit(LIGHT_QUADROTOR, ground_speed=5.0, keep_speed=True):.1f} m/s"
+    '11.7 m/s'
     """
     ground_speed = checks.not_negative_number("ground_speed", ground_speed)
     gust_factor = checks.number("gust_factor", gust_factor, checks.at_least_one)
     gust = wind_limit(uav, rain, air_density=air_density, safety_factor=safety_factor)
     against = np.maximum(np.minimum(gust, uav.top_speed) - ground_speed, 0.0)
-    return np.minimum(gust / gust_factor, against)
+    left = np.maximum(gust - ground_speed, 0.0) if checks.flag("keep_speed", keep_speed) else gust
+    return np.minimum(left / gust_factor, against)
 
 
 def air_speed_held(uav: UAV, rain: float = 0.0, *, air_density: float = STANDARD_AIR, share: float = 1.0) -> float:
