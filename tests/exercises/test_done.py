@@ -31,7 +31,7 @@ def test_all_exercises_are_counted(saved):
     found = exercises.progress(saved(one=[cell("05.2")]))
     assert sorted(found.untouched) == sorted(EXERCISES)
     assert (found.right, found.tried) == ((), ())
-    assert repr(found).startswith(f"0 of {len(EXERCISES)} exercises are right\n01  0 of 3\n")
+    assert repr(found).startswith(f"0 of {len(EXERCISES)} exercises are right\n01  0 of 6\n")
 
 
 def test_right_tried_and_untouched_are_told_apart(saved):
@@ -44,7 +44,7 @@ def test_right_tried_and_untouched_are_told_apart(saved):
     assert "05.4" in found.untouched
     assert "02.3" in found.untouched
     lines = repr(found).splitlines()
-    assert "02  1 of 3" in lines
+    assert any(line.startswith("02  1 of ") for line in lines)
     assert any(line.startswith("05  1 of ") and line.endswith("; not yet 05.3") for line in lines)
 
 
