@@ -228,6 +228,16 @@ def test_curves_are_not_drawn_from_something_else(draw, message, table1):
         draw(table1, bent_curve())
 
 
+def test_expansions_names_routes_and_marks_their_ends(table1):
+    searched = {"near": astar(table1, (90, 18, 30), (50, 44, 30), record=True)}
+    stuck = Route.none("A*", "walled in", goal=np.array([5.0, 5.0, 5.0]), order=searched["near"].info["order"])
+    figure = plot.expansions(table1, searched, stuck)
+    assert [axes.get_title() for axes in figure.axes[:2]] == ["near: 18,007 expanded", "A*: 18,007 expanded"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        "near, 66.4 m", "start", "goal", "building", "goal not reached"
+    ]  # fmt: skip
+
+
 def test_expansions_needs_a_recorded_order(table1, route):
     assert "18,007 expanded" in plot.expansions(table1, route).axes[0].get_title()
     with pytest.raises(ValueError, match="record=True"):

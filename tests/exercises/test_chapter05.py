@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from uavlab.exercises import check
+from uavlab.exercises import chapter05, check
 
 
 def octile_of_largest_first(dx, dy, dz):
@@ -17,26 +17,6 @@ def octile_of_largest_first(dx, dy, dz):
 def octile_without_abs(dx, dy, dz):
     c, b, a = sorted((dx, dy, dz))
     return math.sqrt(3) * c + math.sqrt(2) * (b - c) + a - b
-
-
-@pytest.mark.parametrize(
-    ("answer", "hint"),
-    [
-        (math.hypot, "the straight distance"),
-        (lambda *d: sum(map(abs, d)), "straight moves only"),
-        (lambda *d: max(map(abs, d)), "not equally long"),
-        (lambda *d: max(map(abs, d)) + (2**0.5 - 1) * sorted(map(abs, d))[1], "where is the height"),
-        (lambda *d: np.dot(sorted(map(abs, d)), (3**0.5, 2**0.5, 1)), "is left after c of them"),
-        (lambda *d: np.dot(np.diff(sorted(map(abs, d)), prepend=0), (2**0.5, 3**0.5, 1)), "which one √3"),
-        (octile_of_largest_first, "which of the three is largest"),
-        (octile_without_abs, "to the west"),
-        (lambda *d: 7.0, "you get 7.000"),
-        (lambda *d: "six", "returns text, 'six'"),
-    ],
-)
-def test_mistakes_with_the_octile_distance(answer, hint):
-    assert not check("05.2", answer)
-    assert hint in check("05.2", answer).hint
 
 
 def box(node, move):
@@ -68,23 +48,6 @@ def turned_round(occupied, node, move):
     return on_map(occupied, node, move) and any(occupied[voxel] for voxel in box(node, move))
 
 
-@pytest.mark.parametrize(
-    ("answer", "hint"),
-    [
-        (cuts_corners, "cuts corners"),
-        (forgets_edges, "you look at five of them"),
-        (wraps_around, "let the UAV leave it"),
-        (falls_off, "is the target on the map"),
-        (turned_round, "wrong way round"),
-        (lambda *case: True, "and you say True"),
-        (lambda *case: False, "and you say False"),
-    ],
-)
-def test_mistakes_with_legal_moves(answer, hint):
-    assert not check("05.3", answer)
-    assert hint in check("05.3", answer).hint
-
-
 def search(
     graph, start, goal, estimate, *, better=True, leak=False, early=False, greedy=False, weight=1.0, none=math.inf
 ):
@@ -108,31 +71,120 @@ def search(
     return none
 
 
-@pytest.mark.parametrize(
-    ("mistake", "hint"),
-    [
-        ({"leak": True}, "no road"),
-        ({"leak": True, "better": False}, "no road"),
-        ({"better": False}, "while b still waits"),
-        ({"early": True}, "when it is taken out"),
-        ({"none": None}, "math.inf where there is none"),
-        ({"greedy": True}, "In which order"),
-        ({"weight": 1.5}, "which step doesn't hold"),
-    ],
-)
-def test_mistakes_with_the_search(mistake, hint):
-    verdict = check("05.4", lambda *question: search(*question, **mistake))
+def broken(**mistake):
+    return lambda *question: search(*question, **mistake)
+
+
+TOWN = {"start": {"bridge": 3, "market": 1}, "market": {"bridge": 1}, "bridge": {"goal": 3}, "goal": {}}
+
+
+def trap(market=4, bridge=0, start=0, goal=0, **longer):
+    """A map and an estimate; `longer` changes roads as in start_bridge=4."""
+    roads = {place: dict(ways) for place, ways in TOWN.items()}
+    for road, length in longer.items():
+        one, other = road.split("_")
+        roads[one][other] = length
+    return roads, {"start": start, "market": market, "bridge": bridge, "goal": goal}
+
+
+MISTAKES = {
+    "05.2": {
+        "the straight distance": math.hypot,
+        "straight moves only": lambda *d: sum(map(abs, d)),
+        "not equally long": lambda *d: max(map(abs, d)),
+        "where is the height": lambda *d: max(map(abs, d)) + (2**0.5 - 1) * sorted(map(abs, d))[1],
+        "is left after c of them": lambda *d: np.dot(sorted(map(abs, d)), (3**0.5, 2**0.5, 1)),
+        "which one √3": lambda *d: np.dot(np.diff(sorted(map(abs, d)), prepend=0), (2**0.5, 3**0.5, 1)),
+        "which of the three is largest": octile_of_largest_first,
+        "to the west": octile_without_abs,
+        "you get 7.000": lambda *d: 7.0,
+        "returns text, 'six'": lambda *d: "six",
+    },
+    "05.3": {
+        "cuts corners": cuts_corners,
+        "you look at five of them": forgets_edges,
+        "let the UAV leave it": wraps_around,
+        "is the target on the map": falls_off,
+        "wrong way round": turned_round,
+        "and you say True": lambda *case: True,
+        "and you say False": lambda *case: False,
+    },
+    "05.4": {
+        "no road": broken(leak=True),
+        "while b still waits": broken(better=False),
+        "when it is taken out": broken(early=True),
+        "math.inf where there is none": broken(none=None),
+        "In which order": broken(greedy=True),
+        "which step doesn't hold": broken(weight=1.5),
+        "never asks for the estimate": lambda roads, start, goal, h: search(roads, start, goal, lambda place: 0.0),
+    },
+    "05.5": {
+        "changes for the first time": 0.16,
+        "That is where 3.5 m are kept": 0.33,
+        "Is there no third route": 0.2335,
+        "the other way round": 2.41,
+        "a difference of lengths": 1.76,
+        "above 0": -0.4,
+        "at a smaller ω, too": 0.5,
+        "look at its least clearance": 0.38,
+    },
+    "05.6": {
+        "it isn't admissible": trap(market=4.5),
+        "Your estimate is consistent": trap(market=1),
+        "but not by enough": trap(start_bridge=2.1),
+        "Which place must it close": trap(market=2, start_bridge=4),
+        "no way leads to goal": ({"start": {}, "goal": {}}, {"start": 0, "goal": 0}),
+        "is a dictionary of dictionaries": ([1, 2], {}),
+        "No place is called 'goal'": ({"start": {}}, {"start": 0}),
+        "needs a length above 0": trap(start_bridge=-1),
+        "has no entry for 'tower'": trap(market_tower=1),
+        "or no number": (TOWN, {"start": 0, "goal": 0}),
+        "with the estimate of each place": (TOWN, 3),
+        "half of them are enough": (TOWN | {str(n): {} for n in range(5)}, {}),
+        "There are two": (1, 2, 3),
+        "by texts": (TOWN | {3: {}}, {}),
+    },
+}
+CASES = [(number, words) for number, mistakes in MISTAKES.items() for words in mistakes]
+
+
+@pytest.mark.parametrize(("number", "words"), CASES)
+def test_a_mistake_is_told_what_it_is(number, words):
+    verdict = check(number, MISTAKES[number][words])
     assert not verdict
-    assert hint in verdict.hint
+    assert words in verdict.hint
+
+
+def test_two_mistakes_in_the_search_are_told_one_by_one():
+    assert "no road" in check("05.4", broken(leak=True, better=False)).hint
+
+
+@pytest.mark.parametrize("omega", [0.4142, 0.415, np.float64(0.42), 0.41])
+def test_tipping_price_is_right_to_a_hundredth(omega):
+    assert check("05.5", omega)
+
+
+def test_tipping_prices_are_those_of_the_planner(solutions):
+    routes = [np.array(solutions["out_of_the_notch"](omega)) for omega in (0.1, 0.3, 0.5)]
+    crossings = [(b[0] - a[0]) / (a[1] - b[1]) for a, b in itertools.pairwise(routes)]
+    assert crossings == pytest.approx([chapter05.FIRST, chapter05.TIPPING], abs=1e-3)
+    (length, inside, _), (longest, nothing, kept) = routes[0], routes[2]
+    assert (longest - length) / (inside - nothing) == pytest.approx(0.2335, abs=1e-3)
+    assert kept == 2.5
+
+
+@pytest.mark.parametrize("answer", [trap(), trap(start_bridge=4), trap(start=2, bridge=0.5)])
+def test_other_traps_are_right(answer):
+    assert check("05.6", answer)
+
+
+def test_the_program_of_the_exercise_is_the_one_that_is_caught(solutions):
+    for answer in (trap(), trap(market=2, start_bridge=4), trap(start_bridge=2.1), trap(market=1)):
+        assert solutions["hasty"](*answer) == chapter05.hasty_way(*answer)
 
 
 def test_search_without_a_mistake_is_right():
     assert check("05.4", search)
-
-
-def test_dijkstra_s_search_is_told_so():
-    verdict = check("05.4", lambda graph, start, goal, estimate: search(graph, start, goal, lambda place: 0.0))
-    assert "never asks for the estimate" in verdict.hint
 
 
 def test_search_that_returns_nothing_is_told_so():

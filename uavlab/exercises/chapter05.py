@@ -1,4 +1,4 @@
-"""Exercises of chapter 5, A*: the octile distance, legal moves, and a broken search to repair.
+"""Exercises of chapter 5, A*: the proof, the octile distance, legal moves, a search to repair, a price, and a trap.
 
 A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
 by how they are written.
@@ -6,6 +6,7 @@ by how they are written.
 
 from __future__ import annotations
 
+import heapq
 import itertools
 import math
 import operator
@@ -16,12 +17,26 @@ from typing import Any
 import numpy as np
 
 from uavlab.exercises.hints import each_alike, recognised
-from uavlab.exercises.kinds import asks_for, number, truth
+from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, described, is_number, number, thing, truth
 
 Move = tuple[int, ...]
 Graph = Mapping[Any, Mapping[Any, float]]
 
 MOVES: list[Move] = [move for move in itertools.product((-1, 0, 1), repeat=3) if any(move)]
+
+
+exercise_1 = Quiz(
+    right="c",
+    because="Whatever the other route is, its first node that isn't closed waits, and its f was not below 66.4 m.",
+    wrong={
+        "a": "A node that waits may be 2 m from the start, if the goal lies on the other side. By what does A* order "
+        "the nodes that wait: by g alone?",
+        "b": "Then A* would have nothing to gain over a search of everything. Most of the city was never looked at. "
+        "What does the proof say about them?",
+        "d": "An estimate that is exact everywhere would lead straight to the goal, and nobody has one. Which weaker "
+        "property did the proof use?",
+    },
+)
 
 
 @asks_for(number("the length of the way [cells]"))
@@ -59,33 +74,21 @@ def octile_distance(dx: int, dy: int, dz: int) -> float:
 
 
 OCTILE_MISTAKES: list[tuple[Callable[[int, int, int], float], str]] = [
-    (
-        math.hypot,
-        "That is the straight distance. It is never too high, but (2, 1, 0) shows that no two moves are as short: "
-        "count in moves.",
-    ),
-    (
-        lambda a, b, c: a + b + c,
-        "That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three.",
-    ),
-    (
-        lambda a, b, c: a,
-        "That is the number of moves. They are not equally long: how long is one through a corner?",
-    ),
-    (
-        lambda a, b, c: a + (math.sqrt(2) - 1) * b,
-        "You get the same for (5, 3, 1) as for (5, 3, 0). That is the octile distance of a plane: where is the height?",
-    ),
-    (
-        lambda a, b, c: a + math.sqrt(2) * b + math.sqrt(3) * c,
-        "Too high: a move through a corner goes forward in all three directions at once. How much of the other two "
-        "is left after c of them?",
-    ),
-    (
-        lambda a, b, c: math.sqrt(2) * c + math.sqrt(3) * (b - c) + (a - b),
-        "Almost: which move is √2 long, and which one √3?",
-    ),
-]
+    (math.hypot,
+     "That is the straight distance. It is never too high, but (2, 1, 0) shows that no two moves are as short: "
+     "count in moves."),
+    (lambda a, b, c: a + b + c,
+     "That counts straight moves only. It is too high: (1, 1, 1) is one move away, and you charge three."),
+    (lambda a, b, c: a,
+     "That is the number of moves. They are not equally long: how long is one through a corner?"),
+    (lambda a, b, c: a + (math.sqrt(2) - 1) * b,
+     "You get the same for (5, 3, 1) as for (5, 3, 0). That is the octile distance of a plane: where is the height?"),
+    (lambda a, b, c: a + math.sqrt(2) * b + math.sqrt(3) * c,
+     "Too high: a move through a corner goes forward in all three directions at once. How much of the other two "
+     "is left after c of them?"),
+    (lambda a, b, c: math.sqrt(2) * c + math.sqrt(3) * (b - c) + (a - b),
+     "Almost: which move is √2 long, and which one √3?"),
+]  # fmt: skip
 
 
 @asks_for(truth("whether the move is legal"))
@@ -148,21 +151,15 @@ def faces_are_free(occupied: np.ndarray, node: Move, move: Move) -> bool:
 
 
 LEGAL_MISTAKES: list[tuple[Callable[[np.ndarray, Move, Move], bool], str]] = [
-    (
-        lambda occupied, node, move: not occupied[target_of(node, move)],
-        "You look at the voxel where the move ends, and nowhere else: that cuts corners. Which voxels does a "
-        "diagonal move touch on its way?",
-    ),
-    (
-        faces_are_free,
-        "Straight and diagonal moves are right. A move through a corner passes edges, too: its bounding box has eight "
-        "voxels, you look at five of them.",
-    ),
-    (
-        lambda occupied, node, move: not box_is_free(occupied, node, move),
-        "It is the wrong way round: `occupied` is True where there is an obstacle.",
-    ),
-]
+    (lambda occupied, node, move: not occupied[target_of(node, move)],
+     "You look at the voxel where the move ends, and nowhere else: that cuts corners. Which voxels does a "
+     "diagonal move touch on its way?"),
+    (faces_are_free,
+     "Straight and diagonal moves are right. A move through a corner passes edges, too: its bounding box has eight "
+     "voxels, you look at five of them."),
+    (lambda occupied, node, move: not box_is_free(occupied, node, move),
+     "It is the wrong way round: `occupied` is True where there is an obstacle."),
+]  # fmt: skip
 
 
 def zero(place: Any) -> float:
@@ -171,46 +168,22 @@ def zero(place: Any) -> float:
 
 
 TRAPS: list[tuple[Graph, str, Callable[[Any], float], float, str]] = [
-    (
-        {"a": {"b": 1.0}, "b": {"c": 1.0}, "c": {}},
-        "c",
-        {"a": 2.0, "b": 1.0, "c": 0.0}.__getitem__,
-        2.0,
-        "The only way is a–b–c, twice 1 long, and the estimate is exact: your cost is {}. "
-        "What has been added to g that is no road?",
-    ),
-    (
-        {"a": {"b": 1.0, "c": 4.0}, "b": {"d": 3.0}, "c": {"d": 1.0}, "d": {}},
-        "d",
-        {"a": 4.0, "b": 3.0, "c": 1.0, "d": 0.0}.__getitem__,
-        4.0,
-        "a–b–d is 1 + 3 long, a–c–d is 4 + 1: your cost is {}. c is nearer to the goal than b, but the way to "
-        "it is longer. In which order do nodes come out of the open list?",
-    ),
-    (
-        {"a": {"b": 5.0, "c": 1.0}, "b": {"d": 1.0}, "c": {"b": 1.0}, "d": {}},
-        "d",
-        zero,
-        3.0,
-        "a–b is 5, a–c and c–b are 1 each, b–d is 1: your cost from a to d is {}. "
-        "The direct way to b is found first. What happens when a better one turns up while b still waits?",
-    ),
-    (
-        {"a": {"c": 10.0, "b": 1.0}, "b": {"c": 1.0}, "c": {}},
-        "c",
-        zero,
-        2.0,
-        "a–c is 10, a–b and b–c are 1 each: your cost from a to c is {}. When is the way to the goal known to "
-        "be the cheapest: when the goal is put into the open list, or when it is taken out?",
-    ),
-    (
-        {"a": {}, "b": {}},
-        "b",
-        zero,
-        math.inf,
-        "Where there is no way the cost is infinite: return math.inf when the open list is empty.",
-    ),
-]
+    ({"a": {"b": 1.0}, "b": {"c": 1.0}, "c": {}}, "c", {"a": 2.0, "b": 1.0, "c": 0.0}.__getitem__, 2.0,
+     "The only way is a–b–c, twice 1 long, and the estimate is exact: your cost is {}. "
+     "What has been added to g that is no road?"),
+    ({"a": {"b": 1.0, "c": 4.0}, "b": {"d": 3.0}, "c": {"d": 1.0}, "d": {}}, "d",
+     {"a": 4.0, "b": 3.0, "c": 1.0, "d": 0.0}.__getitem__, 4.0,
+     "a–b–d is 1 + 3 long, a–c–d is 4 + 1: your cost is {}. c is nearer to the goal than b, but the way to "
+     "it is longer. In which order do nodes come out of the open list?"),
+    ({"a": {"b": 5.0, "c": 1.0}, "b": {"d": 1.0}, "c": {"b": 1.0}, "d": {}}, "d", zero, 3.0,
+     "a–b is 5, a–c and c–b are 1 each, b–d is 1: your cost from a to d is {}. "
+     "The direct way to b is found first. What happens when a better one turns up while b still waits?"),
+    ({"a": {"c": 10.0, "b": 1.0}, "b": {"c": 1.0}, "c": {}}, "c", zero, 2.0,
+     "a–c is 10, a–b and b–c are 1 each: your cost from a to c is {}. When is the way to the goal known to "
+     "be the cheapest: when the goal is put into the open list, or when it is taken out?"),
+    ({"a": {}, "b": {}}, "b", zero, math.inf,
+     "Where there is no way the cost is infinite: return math.inf when the open list is empty."),
+]  # fmt: skip
 """Roads, the goal, an estimate, the cost from a, and what a search with another cost should be asked."""
 
 
@@ -262,3 +235,132 @@ def cheapest_way(graph: Graph, start: Any, goal: Any) -> float:
             for neighbour, length in roads.items():
                 cost[neighbour] = min(cost[neighbour], cost[place] + length)
     return cost[goal]
+
+
+FIRST, TIPPING = 0.1597, math.sqrt(2) - 1
+"""ω at which the route out of the notch leaves the wall, and at which it keeps 2.5 m: ΔL/ΔZ of the routes there are."""
+NEAR = 0.01
+
+
+@asks_for_value(number("the least ω at which the route keeps 2.5 m"))
+def exercise_5(omega: float) -> str:
+    """05.5: from which ω on the route out of the notch keeps 2.5 m."""
+    value = float(omega)
+    if abs(value - TIPPING) <= NEAR:
+        return ""
+    for mistake, hint in TIPPING_MISTAKES:
+        if math.isclose(value, mistake, rel_tol=0.01, abs_tol=NEAR):
+            return hint
+    if not value > 0:
+        return "ω is a price, so it is above 0. At 0 the route is the shortest, which scrapes along the wall."
+    if value > TIPPING:
+        return f"At ω = {value:g} the route keeps 2.5 m. But it does so at a smaller ω, too. Try the values below."
+    return f"At ω = {value:g} the route doesn't keep 2.5 m yet: look at its least clearance."
+
+
+TIPPING_MISTAKES: list[tuple[float, str]] = [
+    (FIRST, "There the route changes for the first time. What is the least clearance of the route that it changes to?"),
+    (0.331, "That is where 3.5 m are kept. Here the zone is 2.5 m wide, so it holds fewer metres."),
+    (0.2335, "That compares the shortest route with the safe one. Is there no third route that is cheaper than both?"),
+    (1 / TIPPING, "That is metres in the zone per metre of detour. ω is the other way round: the detour that one of "
+     "them is worth."),
+    (1.757, "That is a difference of lengths in metres. How many metres in the zone does this detour avoid?"),
+]  # fmt: skip
+
+LONGER, MOST_PLACES = 1.1, 8
+
+
+@asks_for_value(thing(tuple, "a pair, (roads, estimate)"))
+def exercise_6(trap: tuple[Any, Any]) -> str:
+    """05.6: a map and an admissible estimate on which a search that never reopens a place is wrong."""
+    if len(trap) != 2:
+        return f"Your tuple has {len(trap)} parts. There are two: (roads, estimate)."
+    roads, estimate = trap
+    if hint := wrong_roads(roads) or wrong_estimate(roads, estimate):
+        return hint
+    rest = {place: cheapest_way(roads, place, "goal") for place in roads}
+    for place in roads:
+        if not 0 <= float(estimate[place]) <= rest[place] + 1e-9:
+            return (
+                f"Your estimate at {place!r} is {float(estimate[place]):g}, and the true rest of the way is "
+                f"{rest[place]:g}: it isn't admissible."
+            )
+    shortest = rest["start"]
+    if math.isinf(shortest):
+        return "From start no way leads to goal: what should be found?"
+    found, falls = hasty_way(roads, estimate), steepest(roads, estimate)
+    if found >= LONGER * shortest - 1e-9:
+        return ""
+    if falls is None:
+        return (
+            "Your estimate is consistent: along no road does it fall by more than the road is long. Then no place has "
+            "to be reopened, and the program is right. Where could it fall by more?"
+        )
+    if found > shortest + 1e-9:
+        return (
+            f"The program goes wrong, but not by enough: it finds {found:g}, and the shortest way is {shortest:g}. "
+            "Make the roads of the wrong way longer, or the right ones shorter."
+        )
+    return (
+        f"From {falls[0]!r} to {falls[1]!r} your estimate falls by more than the road is long. That is needed. But the "
+        f"program still finds the shortest way, {shortest:g}. Which place must it close before the right road to it is "
+        "found?"
+    )
+
+
+def wrong_roads(roads: Any) -> str:
+    """What is wrong with a map of roads, if anything."""
+    if not isinstance(roads, Mapping) or not all(isinstance(ways, Mapping) for ways in roads.values()):
+        return 'The first part is a dictionary of dictionaries: roads["start"]["bridge"] is a length.'
+    if not all(isinstance(place, str) for place in roads):
+        return "Call the places by texts, such as 'bridge'."
+    for name in ("start", "goal"):
+        if name not in roads:
+            return f"No place is called {name!r}. The goal needs an entry, too, if only an empty one."
+    if len(roads) > MOST_PLACES:
+        return f"There are {len(roads)} places; {MOST_PLACES} are allowed, and half of them are enough."
+    for place, ways in roads.items():
+        for neighbour, length in ways.items():
+            if neighbour not in roads:
+                return f"A road leads from {place!r} to {neighbour!r}, but roads has no entry for {neighbour!r}."
+            if not is_number(length) or not 0 < float(length) < math.inf:
+                return f"The road from {place!r} to {neighbour!r} needs a length above 0."
+    return ""
+
+
+def wrong_estimate(roads: Graph, estimate: Any) -> str:
+    """What is wrong with an estimate, before it is looked at closely."""
+    if not isinstance(estimate, Mapping):
+        return f"The second part is a dictionary with the estimate of each place; you have {described(estimate)}."
+    for place in roads:
+        if place not in estimate or not is_number(estimate[place]) or math.isnan(float(estimate[place])):
+            return f"The estimate of {place!r} is missing, or no number."
+    return ""
+
+
+def steepest(roads: Graph, estimate: Mapping[Any, float]) -> tuple[Any, Any] | None:
+    """The first road along which an estimate falls by more than the road is long."""
+    for place, ways in roads.items():
+        for neighbour, length in ways.items():
+            if estimate[place] - estimate[neighbour] > length + 1e-9:
+                return place, neighbour
+    return None
+
+
+def hasty_way(roads: Graph, estimate: Mapping[Any, float]) -> float:
+    """Cost of the way that an A* finds which never reopens a place."""
+    g: dict[Any, float] = {"start": 0.0}
+    closed: set[Any] = set()
+    open_list: list[tuple[float, Any]] = [(float(estimate["start"]), "start")]
+    while open_list:
+        _, place = heapq.heappop(open_list)
+        if place == "goal":
+            return g[place]
+        if place in closed:
+            continue
+        closed.add(place)
+        for neighbour, length in roads[place].items():
+            if neighbour not in closed and g[place] + length < g.get(neighbour, math.inf):
+                g[neighbour] = g[place] + length
+                heapq.heappush(open_list, (g[neighbour] + float(estimate[neighbour]), neighbour))
+    return math.inf

@@ -25,6 +25,7 @@ from uavlab.plot.ground import (
     hatch,
     title_of,
 )
+from uavlab.plot.panels import explain
 from uavlab.plot.style import (
     DPI,
     SIGNS,
@@ -35,10 +36,12 @@ from uavlab.plot.style import (
     draw_routes,
     drawn_routes,
     finished,
+    label_of,
     level_of,
     map_size,
     new_figure,
     plain,
+    signs_of,
     titled,
     with_gaps,
     within,
@@ -410,7 +413,7 @@ def expansions(city: City, *routes: Drawn, colors: Mapping[str, str] | None = No
     Returns
     -------
     matplotlib.figure.Figure
-        A map for each route, with how many nodes were expanded in its title.
+        A map for each route, with its name, or that of its estimate, and how many nodes were expanded in its title.
 
     Raises
     ------
@@ -436,12 +439,13 @@ def expansions(city: City, *routes: Drawn, colors: Mapping[str, str] | None = No
     searches = drawn_routes(city, routes)
     if not searches or any("order" not in route.info for route in searches):
         raise ValueError("routes must be planned with record=True, at least one")
+    names = [name for one in routes for name in (one if isinstance(one, Mapping) else [""])]
     figure, all_axes = plt.subplots(
-        1, len(searches), figsize=(3.4 * len(searches) + 1, 3.7), dpi=DPI, squeeze=False, layout="constrained"
+        1, len(searches), figsize=(3.4 * len(searches) + 1, 4.0), dpi=DPI, squeeze=False, layout="constrained"
     )
     built = built_columns(city)
-    looks = styles([route.planner for route in searches], colors)
-    for axes, route, look in zip(all_axes[0], searches, looks, strict=True):
+    looks, told = styles([route.planner for route in searches], colors), set[str]()
+    for axes, route, name, look in zip(all_axes[0], searches, names, looks, strict=True):
         order = route.info["order"]
         first = np.full(city.shape[:2], np.inf)
         index = city.index_of(order)
@@ -450,9 +454,17 @@ def expansions(city: City, *routes: Drawn, colors: Mapping[str, str] | None = No
         image = draw_map(axes, city, np.where(np.isfinite(first), first, np.nan), SEQUENTIAL, vmin=0, vmax=1)
         if len(route.points) > 1:
             axes.plot(*route.points[:, :2].T, color="white", linewidth=3.0)
-            axes.plot(*route.points[:, :2].T, color=look.color, linewidth=1.5)
-        name = plain(route.info.get("heuristic", route.planner))
-        axes.set_title(f"{name}: {len(order):,} expanded", fontsize=10)
+            axes.plot(*route.points[:, :2].T, color=look.color, linewidth=1.5, label=label_of(route))
+        for sign, place in signs_of(route).items():
+            edge = BLACK if sign == "goal not reached" else "white"
+            axes.plot(*place[:2], color=BLACK, zorder=3, **{"linestyle": "", "markeredgecolor": edge} | SIGNS[sign],
+                      label=None if sign in told else sign)  # fmt: skip
+            told.add(sign)
+        axes.set_title(
+            f"{plain(name or route.info.get('heuristic', route.planner))}: {len(order):,} expanded", fontsize=10
+        )
+    explain(all_axes[0][0], "building")
+    figure.legend(loc="outside lower center", fontsize=8, ncols=len(searches) + 3)
     figure.colorbar(image, ax=all_axes, label="first looked at, as a share of the search")
     return finished(figure)
 
