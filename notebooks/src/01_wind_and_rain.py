@@ -59,8 +59,8 @@ uav = LIGHT_QUADROTOR
 # | ground speed that is asked for | $V_d$ | 5 m/s | a careful speed between houses |
 # | greatest steady speed through the air | $V_\text{uav}$ | 18 m/s | a little below the 20 to 22 m/s in the data sheets of Phantom 4, Matrice 100 and Mavic 2 Pro |
 #
-# They are plausible, not measured. With them the distances from walls that REPARE prints as safe come out in chapter
-# [03](03_predicting_the_disturbance.ipynb).
+# They are plausible, not measured. In chapter [07](07_repare.ipynb) they give, with one fitted constant, the distances
+# from walls that REPARE prints as safe.
 
 # %% tags=["check"]
 assert (uav.mass, uav.thrust, uav.drag_area, uav.rain_area, uav.top_speed) == (1.5, 28.0, 0.06, 0.1, 18.0)
