@@ -7,873 +7,924 @@
 # ---
 
 # %% [markdown]
-# # 07 REPARE: A* with a force in its price
+# # 07 REPARE: what should a metre near a wall cost?
 #
-# A* finds the shortest way and scrapes along walls ([05 A*](05_astar.ipynb)). A potential field keeps away from walls
-# and gets stuck in front of them ([06 potential field](06_potential_field.ipynb)). REPARE (Sensors 2022, 22, 2151,
-# [doi:10.3390/s22062151](https://doi.org/10.3390/s22062151)) wants both virtues: the open list of the one, the forces
-# of the other, and a distance to keep that follows wind and load. Its pseudo-code computes a resultant force and then
-# never uses it. So the question of this notebook is: **how may a force enter the price of a route?** We repair the
-# algorithm, try three answers, two of which are wrong, repeat the paper's Tables 2 to 4 and its figures, and then ask
-# what the price of a metre near a wall *should* be. ("Eq. 3" is an equation of this notebook, "REPARE Eq. 16" one of
-# the paper's.)
+# A drone has to cross a town. The shortest way brushes the walls, and the first gust throws it against one. A way far
+# from every wall is long, and in a narrow yard there is none. So a metre near a wall should cost more than a metre
+# elsewhere. How much more? And how does that depend on the wind and on the load? The paper REPARE (*resilience
+# enhanced* planning of routes) puts the forces of the potential field into the search of A\*. We make its pseudo-code
+# run, try three ways to turn a force into a price, fly the routes in gusts, and then compute what a metre should cost.
 #
-# *Run All* (in the menu **Run**) brings the 3D scenes and the sliders to life.
+# | | |
+# |---|---|
+# | **You will be able to** | write a search whose metres have prices; say what a price can promise and what only a limit can; explain why the work of a force can't be a price; derive a price from the number of wall touches to be expected |
+# | **You need** | chapters [02](02_pauta.ipynb) ($\sigma$, $D_\text{min}$, Rice's formula), [05](05_astar.ipynb) (A\*, prices) and [06](06_potential_field.ipynb) (forces); gradients and line integrals |
+# | **Time** | 75 minutes to read, 1 minute to run |
+# | **Paper** | REPARE, sections 2.1, 2.3 and 3, Eqs 7 to 16, Algorithm 1, Tables 2 to 4 ([doi:10.3390/s22062151](https://doi.org/10.3390/s22062151)) |
+#
+# "Eq. 3" is an equation of this chapter, "REPARE Eq. 16" one of the paper's. We have the paper as a machine-read text;
+# "REPARE doesn't give" means that this text doesn't. *Run All* brings the 3D scene and the sliders to life.
 
 # %%
+import heapq
 import math
-from dataclasses import replace
+from functools import cache
+from itertools import product
 
 import numpy as np
 from matplotlib.colors import LogNorm
-from scipy.optimize import linprog
 
-from uavlab import offsets, planners, plot, resilience, scene
+from uavlab import offsets, planners, plot, scene
 from uavlab.city import City, table1_city
+from uavlab.flight import OffsetProcess, crash_rate, fly, monte_carlo
 from uavlab.planners import astar, flight_conditions, hazard_astar, potential_field, repare, repare_price, shortcut
-from uavlab.resilience import DISTURBANCES, LOADS, ConditionCheck, Monitor, resilience_level, safe_distance
-from uavlab.route import Route
-from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
-from uavlab.weather import Wind, rain_force
+from uavlab.resilience import safe_distance
+from uavlab.statistics import over_maps
+from uavlab.vehicle import LIGHT_QUADROTOR
+from uavlab.weather import Wind
 
 # %%
 city = table1_city()
-notch, middle = (90, 18, 30), (50, 44, 30)  # REPARE Fig. 12
-print(f"{city.name}: {city.occupied.sum():,} of {city.occupied.size:,} voxels of 1 m are occupied")
+notch, middle = (90, 18, 30), (50, 44, 30)
+radius = LIGHT_QUADROTOR.diameter / 2
+print(f"{city.name}: {city.occupied.mean():.1%} of its voxels are occupied; the body's radius is {radius} m")
 
 # %% [markdown]
-# ## Algorithm 1, line by line
+# `city` is the papers' test city of chapter 04. `notch` is a place in the yard of its first building and `middle` one
+# behind that building. They are the ends of REPARE Fig. 12, read off the published figure.
 #
-# The paper's only description of the search is its Algorithm 1. Can it be run? Here is what it says, in our words.
+# ## From the weather to a route
+
+# %% tags=["figure"]
+figure, axes = plot.new_figure(11.4, 4.2)
+boxes = {
+    "weather\nwind, rain (01)": (0, 2), "UAV\nmass, thrust, load, D_uav": (0, 0.3), "force of the\ngusts (01)": (1.7, 2),
+    "offset σ\n(02, 03)": (3.2, 2), "D_min = ξ + D_uav / 2\nξ = 3σ (02)": (5.1, 2), "zone: nearer to\na wall than D_min": (7.3, 2),
+    "reasons near a wall:\nwall (06), gusts, load": (3.7, 0.3), "price of a metre:\n1 + ω in the zone": (7.3, 0.3), "A*\n(05)": (8.8, 0.3),
+    "route": (9.7, 0.3), "in flight: is the offset\nlarger than ξ?": (9.4, 2),
+}  # fmt: skip
+drawn = []
+for (text, (x, y)), color in zip(boxes.items(), ["white"] * 8 + ["#cfe8f7"] * 2 + ["#fbe3c0"], strict=True):
+    around = {"boxstyle": "round,pad=0.5", "facecolor": color}
+    drawn.append(axes.text(x, y, text, ha="center", va="center", fontsize=9, bbox=around))
+links = "0-2 1-2 1-4 1-6 2-3 3-4 4-5 2-6 5-7 6-7 7-8 8-9 9-10 10-4"
+for a, b in (map(int, link.split("-")) for link in links.split()):
+    look = {"arrowstyle": "-|>", "patchA": drawn[a].get_bbox_patch(), "patchB": drawn[b].get_bbox_patch()}
+    look["connectionstyle"] = "arc3,rad=0.3" if b == 4 and a == 10 else "arc3"
+    axes.annotate("", drawn[b].get_position(), drawn[a].get_position(), arrowprops=look)
+axes.text(7.3, 2.62, "yes: a new boundary, plan the rest anew (no: fly on)", fontsize=9, ha="center")
+axes.set(xlim=(-0.8, 10.5), ylim=(-0.3, 3.1), title="REPARE, from the weather to the route and back")
+axes.axis("off")
+plot.finished(figure)
+
+# %% [markdown]
+# *REPARE as a chain of boxes, drawn from the paper's text: white what a price is made of, blue the search, orange what
+# happens in flight. Numbers are chapters.* The force of the gusts gives an offset with the standard deviation $\sigma$.
+# The offset gives the distance to keep,
 #
-# | line | printed | missing or wrong | what we do |
-# |---|---|---|---|
-# | 4 | choose ξ for the disturbance, once | line 13 measures it again and again | plan anew when it changes |
-# | 7–9 | stop when the open list is empty | nothing is ever taken out of it | take out the node of least $g + h$ |
-# | 11, 26 | put neighbours on the open list, twice | no best $g$, no parent: no route | keep and update both |
-# | 12, 14 | does the outer ring meet an obstacle? | the inner ring isn't tested: through walls | test each move's box |
-# | 15–17, 20 | the resultant force $F_\text{fin}$ | never used; no directions | vectors, in the weight ω: below |
-# | 21 | total cost of the inner ring's nodes | a factor on the whole way so far | price per metre (05, Eqs 8, 9) |
-# | 22 | put the node on the closed list | nobody reads it: nodes come again for ever | again only if it got cheaper |
-# | 27 | return the nodes planned | also when there is no way: fails silently | `reached=False` and a reason |
+# $$ D_\text{min} = \xi + \tfrac12 D_\text{uav}, \qquad \xi = 3\sigma \tag{1} $$
 #
-# With all of that repaired it is A* with a price. What is left to decide is the price.
+# (REPARE Eq. 7). $\xi$ is the largest offset that the route should survive, and $D_\text{uav} = 1$ m is the diameter of
+# the body. Let $D$ be the distance from a voxel's centre to the nearest obstacle. Then
+#
+# $$ O_\text{risk} = \begin{cases} 1 & D < D_\text{min} \\ 0 & \text{else,} \end{cases} \qquad
+#    p = 1 + \omega\, O_\text{risk}, \qquad c(n, m) = d\,\frac{p(n) + p(m)}{2}. \tag{2} $$
+#
+# The voxels with $O_\text{risk} = 1$ are the *zone*. $p$ is the price of a metre, and $c$ is what a move of length $d$
+# from voxel $n$ to voxel $m$ costs. The weight $\omega$ says how much more a metre in the zone costs. It is $\omega_0$
+# times a sum of reasons (Eq. 8 below).
+#
+# REPARE names classes of load and of disturbance, and its Table 4 prints $D_\text{min}$ for three cases. Where we name
+# no case, it is the first:
 
 # %% tags=["nbval-check-output"]
-occupied = np.zeros((20, 20, 12), bool)
-occupied[10] = True
-cut = City(occupied, name="A wall without a door")
-for answer in (
-    repare(cut, (4.5, 10.5, 6.5), (16.5, 10.5, 6.5)),
-    repare(city, notch, middle, load="heavy", disturbance="heavy"),
-):
-    print(answer.reached, "-", answer.reason)
-try:
-    repare(city, (71.5, 33.0, 30.5), middle)
-except ValueError as error:
-    print(error)
+cases = {
+    "light load, mild wind": ("light", "mild"),
+    "heavy load, mild wind": ("heavy", "mild"),
+    "light load, heavy wind": ("light", "heavy"),
+}
+sigmas = {}
+for name, case in cases.items():
+    keep = safe_distance(*case)
+    sigmas[name] = (keep - radius) / 3
+    print(f"{name:<23} D_min = {keep} m, so σ = {sigmas[name]:.2f} m")
 
 # %% [markdown]
-# A goal behind a wall and a load too heavy for the wind are answers. A start within the distance to keep is a wrong
-# question: it is refused, and the message says which point would do.
+# The chain above goes from a force by $\sigma$ to $D_\text{min}$. Here **we read Eq. 1 backwards**, from the printed
+# $D_\text{min}$ to $\sigma$, as chapter 02 does. To start from the force one needs numbers for the classes. Ours are
+# payloads up to 0.25 kg (*light*) and 1 kg (*heavy*) and mean winds up to 6 m/s (*mild*) and 9 m/s (*heavy*). With them
+# chapter [03](03_predicting_the_disturbance.ipynb) has the offset
 #
-# ## How a force may enter the cost
+# $$ \xi = 1\,\text{m} + 8.5\,\text{m}\cdot |\mathbf F_\text{dist}|, \quad\text{rounded up to whole metres,} \tag{3} $$
 #
-# Inside the distance $D_\text{min}$ a wall pushes with (REPARE Eq. 15, as a vector, $R = D_\text{min}$)
+# where $|\mathbf F_\text{dist}|$ is the force of the gusts relative to the thrust that is left (Eq. 5 below). Eq. 3
+# gives Table 4's three values. But payloads, winds, 1 m and 8.5 m were *chosen* so that it does.  That is a circle:
+# neither direction is evidence for the other. We can test only what comes after $\sigma$: whether $3\sigma$ is enough,
+# and what to do with $D_\text{min}$.
+
+# %% tags=["check"]
+for case, printed in zip(cases.values(), (3.5, 4.5, 5.5), strict=True):
+    assert safe_distance(*case) == safe_distance(*case, reading="physical") == printed
+
+# %% [markdown]
+# ## Algorithm 1: as printed, and so that it runs
+#
+# Most of the 27 lines of REPARE's Algorithm 1 are A\*'s. Five places have to be changed before it runs. $g(n)$ is the
+# least cost found so far from the start to $n$, $h(n)$ the straight distance from $n$ to the goal, and $f = g + h$
+# (chapter 05).
+#
+# | line | as printed, in short | ours | why |
+# |---|---|---|---|
+# | – | *(nothing)* | `n ← take the node of least f out of open` | no printed line takes a node out |
+# | 14 | `does the outer ring (26 voxels about D_min away) meet an obstacle?` | `O_risk` by $D$, all around; and `if the move n → m meets an obstacle: skip m` | the ring changes the cost only; a route might go through a wall |
+# | 15, 17, 20 | `F_fin ← sum of all forces` | `ω(m) ← Eq. 8` | no later line uses the sum, $F_\text{fin}$ |
+# | 21 | `multiply all of the way so far by 1 + ω` | `c ← g(n) + d (p(n) + p(m))/2` | the printed factor also multiplies metres flown before the zone; so the way there and the way back cost differently |
+# | – | *(nothing)* | `if c < g(m): g(m) ← c, parent(m) ← n` | without parents there is no route to return |
+#
+# This is A\* with a price. Which moves are there?
+
+
+# %%
+def moves_from(city, node):
+    """Neighbours that a straight move reaches without touching an obstacle, and the length of the move [m]."""
+    for move in product((-1, 0, 1), repeat=3):
+        there = tuple(i + step for i, step in zip(node, move, strict=True))
+        if any(move) and all(0 <= i < size for i, size in zip(there, city.shape, strict=True)):
+            box = tuple(slice(min(i, j), max(i, j) + 1) for i, j in zip(node, there, strict=True))
+            if not city.occupied[box].any():
+                yield there, city.cell * math.hypot(*move)
+
+
+# %% [markdown]
+# And the search:
+
+
+# %%
+def priced_search(city, start, goal, price):
+    """A* with a price: what the cheapest route costs [m], and the node before each node that was seen."""
+    start, goal = (tuple(city.cell_of(point).tolist()) for point in (start, goal))
+    g, parent, closed = {start: 0.0}, {start: None}, set()
+    open_list = [(0.0, start)]
+    while open_list:
+        _, node = heapq.heappop(open_list)
+        if node == goal:
+            break
+        if node in closed:
+            continue
+        closed.add(node)
+        for there, length in moves_from(city, node):
+            cost = g[node] + length * (price[node] + price[there]) / 2
+            if cost < g.get(there, math.inf):
+                g[there], parent[there] = cost, node
+                heapq.heappush(open_list, (cost + city.cell * math.dist(there, goal), there))
+    return g.get(goal, math.inf), parent
+
+
+# %% [markdown]
+# Does it agree with the library's `repare`? We compare in voxels of 2 m, on Fig. 12's ends and three random pairs.
+# (`repare_price` is Eq. 8 in every voxel.)
+
+# %% tags=["nbval-check-output"]
+coarse = table1_city(cell=2.0)
+coarse_price = repare_price(coarse, flight_conditions("light", "mild"))
+costs = []
+for pair in [(notch, middle), *coarse.random_pairs(3, 7, apart=40, min_clearance=4.5)]:
+    by_hand, _ = priced_search(coarse, *pair, coarse_price)
+    library, blind = repare(coarse, *pair).cost, astar(coarse, *pair, price=coarse_price, heuristic="zero").cost
+    costs.append((by_hand, library, blind))
+    print(f"by hand {by_hand:.3f} m, repare {library:.3f} m, without an estimate (h = 0) {blind:.3f} m")
+
+# %% tags=["check"]
+assert np.allclose(np.ptp(costs, axis=1), 0.0, atol=1e-9)
+
+# %% [markdown]
+# They agree, as they must: no metre costs less than 1, so the straight distance $h$ never overestimates the rest
+# (chapter 05). REPARE is *exact*: no route from voxel to voxel costs less **at REPARE's price**. A\* is exact, too, at
+# the price 1. Each is best by its own yardstick:
+
+
+# %%
+def cost_of(route, price):
+    """What a route from voxel to voxel costs: the sum of Eq. 2 over its moves [m]."""
+    paid = price[tuple(city.cell_of(route.points).T)]
+    return float(np.diff(route.distance) @ (paid[:-1] + paid[1:]) / 2)
+
+
+mild_price = repare_price(city, flight_conditions("light", "mild"))
+straight = shortcut(repare(city, notch, middle), city, price=mild_price)
+for route in (astar(city, notch, middle), repare(city, notch, middle)):
+    cost = cost_of(route, mild_price)
+    print(f"{route.planner:<22} {route.length:.2f} m long, {route.clearance(city)} m from walls, costs {cost:,.2f} m")
+print(f"REPARE, straightened   {straight.length:.2f} m long, costs {straight.cost:.2f} m")
+
+# %% tags=["check"]
+there = repare(city, notch, middle)
+assert math.isclose(cost_of(there, mild_price), there.cost)
+assert (round(there.cost, 2), round(straight.cost, 2), straight.clearance(city)) == (71.21, 67.65, 3.5)
+assert cost_of(astar(city, notch, middle), mild_price) > 800
+
+# %% [markdown]
+# The last line is cheaper still: `shortcut` joins waypoints by straight lines at *any angle*, where that costs no more.
+#
+# ## Is $D_\text{min}$ a limit or a price?
+#
+# REPARE's text *requires* the distance $D_\text{min}$, but its cost only adds a penalty. Take a wall with a gap of 5 m
+# straight ahead and a second, wide opening far to the side. The UAV wants to keep $D_\text{min} = 3.5$ m. In the middle
+# of the gap it has 2.5 m.
+#
+# > **Predict first.** Which way does REPARE take with $\omega_0 = 0.5$, and which with $\omega_0 = 2$? ($\omega_0$
+# > is `penalty` in the code.) And what if the second opening is closed?
+
+# %%
+blocks = np.zeros((60, 44, 20), bool)
+blocks[28:32] = True
+blocks[28:32, 18:23] = False  # the gap
+closed = City(blocks, name="a wall with a gap")
+blocks[28:32, 36:] = False  # the second opening
+opened = City(blocks, name="a wall with two gaps")
+ends = (6.5, 20.5, 10.5), (53.5, 20.5, 10.5)
+
+# %% tags=["nbval-check-output"]
+for name, town in {"two openings": opened, "the gap alone": closed}.items():
+    for omega in (0.5, 2.0):
+        route = repare(town, *ends, penalty=omega)
+        away = f"{route.clearance(town)} m from walls"
+        print(f"{name}, ω₀ = {omega}: {route.length:.2f} m long, costs {route.cost:.2f} m, {away}")
+print("as a limit, the gap alone:", astar(closed, *ends, min_clearance=3.5).reason)
+
+# %% tags=["figure"]
+routes = {f"REPARE, ω₀ = {omega}": repare(opened, *ends, penalty=omega) for omega in (0.5, 2.0)}
+figure = plot.area_map(
+    opened,
+    {"zone, D < 3.5 m": (opened.clearance < 3.5)[:, :, 10], "building": opened.occupied[:, :, 10]},
+    paths={name: route.points[:, :2] for name, route in routes.items()},
+    points={"start": ends[0][:2], "goal": ends[1][:2]},
+    title="The same planner with two weights",
+    colors={"zone, D < 3.5 m": plot.YELLOW, "REPARE, ω₀ = 0.5": plot.BLUE, "REPARE, ω₀ = 2.0": plot.GREEN},
+)
+for line in figure.axes[0].lines:
+    line.set_path_effects([])  # a white rim would look like a free way through the zone
+figure
+
+# %% tags=["check"]
+assert [route.clearance(opened) for route in routes.values()] == [2.5, 3.5]
+assert all(repare(closed, *ends, penalty=omega).clearance(closed) == 2.5 for omega in (0.5, 2.0, 50.0))
+assert not astar(closed, *ends, min_clearance=3.5).reached
+
+# %% [markdown]
+# *From above: a wall with two openings, the zone that fills the gap, and REPARE's route for two weights.* With the
+# smaller weight the gap costs less than the detour, with the larger one more. When there is no other way, the route
+# goes through the gap and pays. So **in REPARE's search $D_\text{min}$ is a price and no limit.** A limit is
+# `astar(..., min_clearance=3.5)`. It may find no way.
+#
+# > **Try it.** Find a weight between 0.5 and 2 at which the route just changes. Which two costs are equal there?
+
+# %% tags=["try-it"]
+tried = repare(opened, *ends, penalty=1.0)
+print(f"{tried.length:.2f} m long, costs {tried.cost:.2f} m, {tried.clearance(opened)} m from walls")
+
+# %% [markdown]
+# The gap costs $47 + 15.65\,\omega_0$ metres by the three weights above, the detour its length, 62.74 m. They are equal
+# at $\omega_0 = 1.006$.
+#
+# ## Three forces
+#
+# REPARE Eq. 16 adds up forces of different kinds. We make all of them plain numbers. The pull of **the goal** is 1
+# everywhere (chapter 06).
+#
+# **A wall** pushes inside $D_\text{min}$ (REPARE Eq. 15, the potential field's push with the range $D_\text{min}$):
 #
 # $$ \mathbf F_\text{rep} = k_\text{rep}\left(\frac1D - \frac1{D_\text{min}}\right)\frac1{D^2}\,\mathbf n,
-#    \qquad k_\text{rep} = \tfrac14 D_\text{min}^3, \tag{1} $$
+#    \qquad k_\text{rep} = \tfrac14 D_\text{min}^3. \tag{4} $$
 #
-# with $\mathbf n$ away from it. The goal pulls with a force of constant size, $F_\text{tra} = 1$, which makes all
-# forces plain numbers. The wind pushes with $\mathbf F_\text{dist}$: the drag of the gusts over the thrust that is
-# left against them. REPARE Eq. 16 adds all of them up. And then?
+# $\mathbf n$ is the unit vector away from the wall. REPARE doesn't give $k_\text{rep}$. With ours the push is 1, as
+# large as the pull, at $D = D_\text{min}/2$.
 #
-# ### Way 1: the force does work
+# **Gusts** push with a force that we divide by the thrust that is left against it. (That its 1 weighs as much as the
+# pull's is our choice.) A UAV of the mass $m$ needs $m g$ of its thrust $T$ to stay up. By Pythagoras $\sqrt{T^2 - (m
+# g)^2}$ is left for the sides. So
 #
-# The first idea is from mechanics. A step $\Delta\mathbf x$ that the force favours should be cheap, so let it cost
-# $-\mathbf F\cdot\Delta\mathbf x$. But the force is minus the gradient of a potential, and then the cost of a route is
+# $$ |\mathbf F_\text{dist}| = \frac{F_\text{gust}}{\sqrt{T^2 - (m g)^2}}, \qquad \lambda_G = \frac{m g}{T}. \tag{5} $$
 #
-# $$ -\int \mathbf F\cdot d\mathbf x = U(\text{goal}) - U(\text{start}), \tag{2} $$
+# $F_\text{gust}$ is the drag in the strongest gusts, which are 1.75 times as fast as the mean wind (chapter 01).
+# $|\mathbf F_\text{dist}| = 1$ would mean that gusts take all that is left.
 #
-# **the same for every route.** Along the way that scrapes and the way that keeps 3.5 m:
+# **The load** isn't a force here: lift has balanced its weight. But it makes $m$ larger, so less thrust is left (Eq.
+# 5), and its ratio $\lambda_G$ is a reason of its own (Eq. 8). `flight_conditions` computes both:
+
+# %% tags=["nbval-check-output"]
+for name, case in cases.items():
+    now = flight_conditions(*case)
+    print(f"{name:<23} |F_dist| = {now.push:.2f}, load ratio λ_G = {now.load_ratio:.2f}")
+
+# %% [markdown]
+# How may they enter a price? We try three ways.
+#
+# ### Way 1: the work of the forces
+#
+# A step $\Delta\mathbf x$ that a force favours should be cheap. So let it cost the work against the force,
+# $-\mathbf F\cdot\Delta\mathbf x$.
+#
+# > **Predict first.** Two routes lead out of the notch: one scrapes along the walls, the other keeps 3.5 m. Which of
+# > them does more work against goal and walls?
+#
+# Pull and push are minus the gradient of a potential $U$ (chapter 06). A constant wind $\mathbf F$ has one, too:
+# $U = -\mathbf F\cdot\mathbf x$. The line integral of a gradient depends on its ends only:
+#
+# $$ -\int_\text{route} \mathbf F\cdot d\mathbf x = \int_\text{route} \nabla U\cdot d\mathbf x
+#    = U(\text{goal}) - U(\text{start}). \tag{6} $$
+#
+# So **all routes cost the same:**
 
 # %% tags=["nbval-check-output"]
 for route in (astar(city, notch, middle), repare(city, notch, middle)):
     fine = route.resample(0.02)
     steps = np.diff(fine.points, axis=0)
     pull, push, _ = planners.potential_forces(city, fine.points[:-1] + steps / 2, route.points[-1])
-    by_goal, by_walls = -(pull * steps).sum(), -(push * steps).sum()
-    print(f"{route.planner:<6} {route.length:.1f} m, {route.clearance(city)} m from walls: "
-          f"cost {by_goal:.2f} by the goal's pull, {abs(by_walls):.2f} by the walls' push")  # fmt: skip
-    assert math.isclose(by_goal, -np.linalg.norm(route.points[-1] - route.points[0]), abs_tol=1e-3)
-    assert abs(by_walls) < 1e-3
+    goals, walls = -(pull * steps).sum(), -(push * steps).sum()
+    print(
+        f"{route.planner:<6} {route.clearance(city)} m from walls: work against the pull {goals:.2f}, "
+        f"against the push {abs(walls):.2f}"
+    )
+
+# %% tags=["check"]
+assert math.isclose(goals, -np.linalg.norm(route.points[-1] - route.points[0]), abs_tol=1e-3)
+assert abs(walls) < 1e-3
 
 # %% [markdown]
-# What the walls charge on the way in they refund on the way out, and the pull of the goal only measures the straight
-# distance. The cost is also negative. A* needs prices of at least 0: with a negative one, flying in circles pays.
-#
-# One may rescue the idea by adding the length and cutting off what is below 0. A* charges places, not moves, so let
-# the move point to the goal, along the unit vector $\mathbf t$:
-#
-# $$ p_1 = \max\bigl(0,\; 1 - (\mathbf F_\text{rep} + \mathbf F_\text{dist})\cdot\mathbf t\bigr). \tag{3} $$
+# The goal is 47.71 m away, and on each metre nearer to it the pull helps by 1. What a wall charges on the way towards
+# it, it pays back on the way out. So there is nothing to plan. Adding the length doesn't save the idea: the cost is
+# then the length plus a constant, and the cheapest route is plain A\*'s.
 #
 # ### Way 2: the size of the sum
 #
-# The text around REPARE Eq. 16 says that the *size* of the resultant decides. So let it scale the weight
-# $\omega = \omega_0 F$ of the zone, $\omega_0 = 2$:
+# REPARE says that the *size* of the resultant decides whether the UAV is near an obstacle. We read that as a weight in
+# proportion to it. We leave the pull out, so that the price doesn't depend on where the goal is:
 #
-# $$ p_2 = 1 + \omega_0\,\frac{|\mathbf F_\text{rep} + \mathbf F_\text{dist}|}{F_\text{tra}}\, O_\text{risk}. \tag{4} $$
+# $$ \omega = \omega_0\,|\mathbf F_\text{rep} + \mathbf F_\text{dist}|. \tag{7} $$
 #
-# ### Way 3: ours
+# ### Way 3: reasons that add up
 #
-# Three reasons make a metre near a wall worse: the wall is near, gusts push *towards* it, and a heavy load leaves
-# little thrust. Reasons add up and must not cancel. So, with the load ratio $\lambda$ (weight over thrust) and
-# REPARE's weighting factors $\vartheta_F$ and $\vartheta_G$ (both 1 here),
+# Four reasons make a metre worse: it lies in the zone at all, the wall is near, gusts push *towards* the wall, and the
+# load leaves little thrust. One must not cancel another. So we add sizes:
 #
-# $$ p_3 = 1 + \omega\, O_\text{risk}, \qquad
-#    \omega = \omega_0\,\frac{1 + |\mathbf F_\text{rep}| + \vartheta_F \max(0, -\mathbf F_\text{dist}\cdot\mathbf n)
-#    + \vartheta_G\, \lambda}{F_\text{tra}}. \tag{5} $$
+# $$ \omega = \omega_0\,\bigl(1 + |\mathbf F_\text{rep}| + \vartheta_F \max(0, -\mathbf F_\text{dist}\cdot\mathbf n)
+#    + \vartheta_G\, \lambda_G\bigr). \tag{8} $$
 #
-# `repare_price` is Eq. 5. The other two, on any city:
+# $\vartheta_F$ and $\vartheta_G$ are REPARE's weighting factors for disturbance and load. Ours are 1; REPARE doesn't
+# give them. The product $-\mathbf F_\text{dist}\cdot\mathbf n$ is the part of the gusts that points at the wall. A
+# class such as *mild* has no direction. For it `repare` takes the worst: at every wall the gusts blow towards that
+# wall, and $|\mathbf F_\text{dist}|$ stands in place of the product. $\omega_0 = 2$ is our choice, too (see exercise
+# 07.5). Eq. 8 is the library's price.
+#
+# > **Predict first.** A UAV flies along an endless wall. The mean wind of 9 m/s blows towards the wall, along it, or
+# > away from it. In which wind should a metre cost most? In which does it cost most by Eq. 7?
 
 
 # %%
-def forces_near(town, now):
-    """Push of the nearest wall (nx, ny, nz, 3) and of the gusts (3,), for known wind."""
-    size = planners.repulsion(np.maximum(town.clearance, town.cell / 2), now.safe_distance**3 / 4, now.safe_distance)
-    return size[..., None] * town.wall_normal, now.push * np.array(now.wind) / np.linalg.norm(now.wind)
+def prices_along_a_wall(distance, now, towards_wall):
+    """Price of a metre by ways 2 and 3; `towards_wall` is the cosine between wind and wall: 1, 0 or -1."""
+    wall, gusts = planners.repulsion(distance, now.safe_distance**3 / 4, now.safe_distance), now.push  # Eqs 4 and 5
+    away = wall - gusts * towards_wall  # parts of the sum: away from the wall, and along it
+    along = gusts * math.sqrt(1 - towards_wall**2)
+    by_size = 2 * np.hypot(away, along)
+    by_reasons = 2 * (1 + wall + max(0.0, gusts * towards_wall) + now.load_ratio)
+    return np.where(distance < now.safe_distance, [1 + by_size, 1 + by_reasons], 1.0)
 
 
-def work_price(town, now, goal):
-    """Eq. 3: a metre towards the goal, less what the forces do for it; and the share of voxels where it is negative."""
-    walls, gusts = forces_near(town, now)
-    way = np.asarray(goal) - town.center_of(np.moveaxis(np.indices(town.shape), 0, -1))
-    way /= np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-9)
-    price = 1 - ((walls + gusts) * way).sum(axis=-1)
-    return np.maximum(price, 0.0), np.mean(price[~town.occupied] < 0)
-
-
-def size_price(town, now):
-    """Eq. 4: the size of the sum of the forces, in the zone."""
-    walls, gusts = forces_near(town, now)
-    return planners.penalty_zone(town, now.safe_distance, penalty=2.0 * np.linalg.norm(walls + gusts, axis=-1))
-
-
-# %% [markdown]
-# An endless wall, and a UAV with a light load that flies along it. The wind blows with 9 m/s towards the wall, along
-# it (with the flight), or away from it. Table 4 says $D_\text{min} = 5.5$ m.
-
-# %% tags=["nbval-check-output"]
-occupied = np.zeros((14, 3, 3), bool)
-occupied[:2] = True
-wall = City(occupied, name="A wall")
-winds = {"towards the wall": (-9.0, 0.0), "along it": (0.0, 9.0), "away from it": (9.0, 0.0)}
-along = {}
-for name, wind in winds.items():
-    now = flight_conditions("light", Wind(wind))
-    priced = work_price(wall, now, (8.5, 1e9, 1.5))[0], size_price(wall, now), repare_price(wall, now)
-    along[name] = [price[2:, 1, 1] for price in priced]
-distance = wall.clearance[2:, 1, 1]
-print(f"D_min = {now.safe_distance} m, gusts push with {now.push:.2f} of the thrust left, λ = {now.load_ratio:.2f}")
-print("price of a metre at", *(f"{d:>10.1f} m" for d in distance[:6]))
-for way in range(3):
-    for name, prices in along.items():
-        print(f"way {way + 1}, {name:<16}", *(f"{p:>8.2f}" for p in prices[way][:6]))
-assert np.allclose(along["towards the wall"][0], 1.0)
-assert along["towards the wall"][1][3] < 1.2 < along["away from it"][1][3]
-assert (along["towards the wall"][2] >= along["away from it"][2]).all()
+windy = flight_conditions("light", "heavy")
+winds = {"wind towards the wall": 1.0, "wind along it": 0.0, "wind away from it": -1.0}
+some = np.array([1.5, 2.5, 3.39, 4.5, 5.4])
+print(f"{'price of a metre at':<28}", *(f"{d:>7} m" for d in some))
+for way in (2, 3):
+    for name, cosine in winds.items():
+        print(f"way {way}, {name:<21}", *(f"{p:>9.2f}" for p in prices_along_a_wall(some, windy, cosine)[way - 2]))
 
 # %% tags=["figure"]
-figure, panels = plot.new_panels(1, 3, share="y", width=11.4)
-titles = "way 1: work of the force (Eq. 3)", "way 2: size of the sum (Eq. 4)", "way 3: reasons add up (Eq. 5)"
+figure, panels = plot.new_panels(1, 2, share="y", width=10.4, height=4.0)
+away = np.linspace(0.5, 9, 400)
+titles = "way 2: size of the sum (Eq. 7)", "way 3: reasons add up (Eq. 8)"
+looks = zip(winds, (plot.BLUE, plot.ORANGE, plot.BLACK), ("-", "--", ":"), strict=True)
+looks = {name: {"color": color, "linestyle": style} for name, color, style in looks}
 for way, (axes, title) in enumerate(zip(panels, titles, strict=True)):
-    winds = {f"wind {name}": prices[way] for name, prices in along.items()}
-    plot.lines(distance, winds, "distance to the wall [m]", "price of a metre along the wall [1]", steps=True, log="y",
-               places={"D_min": 5.5}, x_range=(0, 9), y_range=(0.3, 1000), title=title, axes=axes)  # fmt: skip
-figure
+    for name, cosine in winds.items():
+        axes.semilogy(away, prices_along_a_wall(away, windy, cosine)[way], **looks[name], linewidth=2, label=name)
+    axes.axvline(5.5, color="0.4", linewidth=1)
+    axes.annotate("D_min", (5.6, 30), fontsize=9)
+    axes.set(xlabel="distance to the wall D [m]", title=title, xlim=(0, 9), ylim=(0.8, 1000))
+    axes.grid(alpha=0.3)
+panels[0].set_ylabel("price of a metre, logarithmic")
+panels[1].legend(loc="upper right", fontsize=9)
+plot.finished(figure)
+
+# %% tags=["check"]
+fine = np.linspace(1, 5.49, 4491)
+dip = prices_along_a_wall(fine, windy, 1.0)[0]
+assert abs(fine[dip.argmin()] - 3.385) < 0.002
+assert dip.min() < 1.002
+assert (prices_along_a_wall(fine, windy, 1.0)[1] > prices_along_a_wall(fine, windy, -1.0)[1]).all()
+at_edge = [prices_along_a_wall(np.array([5.4]), windy, cosine)[0, 0] for cosine in winds.values()]
+assert at_edge[0] < at_edge[1] < at_edge[2]
+assert all((dip < prices_along_a_wall(fine, windy, cosine)[0]).all() for cosine in (0.0, -1.0))
+block = np.zeros((14, 3, 3), bool)
+block[:2] = True
+wall = City(block)
+for cosine, wind in zip((1.0, 0.0, -1.0), ((-9.0, 0.0), (0.0, 9.0), (9.0, 0.0)), strict=True):
+    theirs = repare_price(wall, flight_conditions("light", Wind(wind)))[2:, 1, 1]
+    assert np.allclose(theirs, prices_along_a_wall(wall.clearance[2:, 1, 1], windy, cosine)[1])
 
 # %% [markdown]
-# *Way 1.* The wall pushes sideways and the UAV flies along: no work. The price along the wall is that far from any wall,
-# at every distance: free flight along a wall, and only wind from behind makes a difference.
+# *Price of a metre beside a wall for three winds, on a logarithmic scale.* By way 2 (left) the wind *towards* the wall
+# gives the lowest price all through the zone: the two forces point against each other, and at about 3.39 m they cancel,
+# as if there were no wall. That is upside down. Another $k_\text{rep}$ moves the place; that this wind gives the lowest
+# price stays. By way 3 (right) a metre costs most in the wind towards the wall. The other two cost the same.
 #
-# *Way 2.* At 3.5 m the price falls to 1.12 just when the wind blows *towards* the wall: there push of the wall and
-# push of the wind cancel, and a UAV would rather fly at 3.5 m than at 5 m. Wind *away* from the wall makes it more expensive.
-# Both are upside down.
-#
-# *Way 3* rises towards the wall in every wind, and most in the wind that blows towards it.
-#
-# ### On routes
-#
-# Forty *blocked* pairs of Table 1's city, for which plain A* comes within half a metre of a wall. The wind blows with
-# 9 m/s to the east. What happens on a route is measured in two ways. Rice's formula (notebook 02) says how often an
-# offset crosses a margin outwards, so the number of wall touches to be expected on a flight at speed $v$ is
-#
-# $$ N = \int \nu(u)\,\frac{ds}{v}, \qquad \nu(u) = \frac{\omega_n}{2\pi}\, e^{-u^2/2\sigma^2}, \qquad
-#    u = D(\mathbf x + \boldsymbol\mu) - r, \tag{6} $$
-#
-# with body radius $r = 0.5$ m, $v = 5$ m/s, $\omega_n = 1$ rad/s, and $3\sigma = D_\text{min} - r$ (Pauta, REPARE Eq.
-# 7). And for each route 200 flights with offsets drawn by `offset_paths`, towards the wall that is nearest.
+# Does it matter for routes? Here and below we take 40 *grazing* pairs: between them plain A\* flies in voxels next to a
+# wall. Both ends are at least 6.5 m from walls: `repare` refuses ends inside the zone, here 5.5 m, and below we widen
+# it. The wind blows to the east with 9 m/s. Way 2 has no constant part, so its price is lower at the edge, too. To see
+# what the *direction* does, another price adds the two sizes, $\omega_0(|\mathbf F_\text{rep}| + |\mathbf
+# F_\text{dist}|)$.
 
 
 # %%
-def margins(route, mean=(0.0, 0.0, 0.0), radius=0.5):
-    """Room to the nearest wall in each voxel along the route, and metres flown in it."""
-    index, metres = city.voxels_along(route.points)
-    away = city.distance(city.center_of(index) + mean, exact_within=20.0)
-    return np.maximum(away - radius, 0.0), metres
+def size_prices(town, now):
+    """Way 2 in every voxel of a city (Eqs 2 and 7), and with the two sizes added instead."""
+    size = planners.repulsion(np.maximum(town.clearance, town.cell / 2), now.safe_distance**3 / 4, now.safe_distance)
+    gusts = now.push * np.array(now.wind) / np.linalg.norm(now.wind)
+    total = np.linalg.norm(size[..., None] * town.wall_normal + gusts, axis=-1)
+    return [planners.penalty_zone(town, now.safe_distance, penalty=2.0 * both) for both in (total, size + now.push)]
 
 
-def touches(route, sigma, speed=5.0, **where):
-    """Eq. 6: wall touches to be expected on a flight."""
-    room, metres = margins(route, **where)
-    return float(offsets.crossing_rate(room, sigma) @ metres / speed)
-
-
-def crashes(route, sigma, rng, speed=5.0, count=200, **where):
-    """Share of drawn flights that touch a wall."""
-    room, metres = margins(route, **where)
-    clock, pushed = offsets.offset_paths(sigma, route.length / speed, rng, count=count, step=0.1)
-    at = np.minimum(np.searchsorted(np.cumsum(metres), speed * clock), len(room) - 1)
-    return np.mean((pushed > room[at]).any(axis=1))
-
+candidates = city.random_pairs(140, 8, apart=40, min_clearance=6.5)
+grazing = [pair for pair in candidates if astar(city, *pair).clearance(city) <= radius][:40]
+eastward = flight_conditions("light", Wind((9.0, 0.0)))
 
 # %% tags=["nbval-check-output"]
-drawn = city.random_pairs(150, 8, apart=40, min_clearance=8.0)
-blocked = [pair for pair in drawn if astar(city, *pair).clearance(city) <= 0.5][:40]
-now = flight_conditions("light", Wind((9.0, 0.0)))
-sigma = (now.safe_distance - 0.5) / 3
-prices = {"plain A*": None, "way 2": size_price(city, now), "way 3": repare_price(city, now)}
-routes = {name: [astar(city, *pair, price=price) for pair in blocked] for name, price in prices.items()}
-rng = np.random.default_rng(8)
-print("            length   least clearance   below D_min   touches per 1000 flights: Rice, drawn")
-table = {}
-for name, flown in routes.items():
-    least = np.array([route.clearance(city) for route in flown])
-    expected = 1000 * np.mean([touches(route, sigma) for route in flown])
-    seen = 1000 * np.mean([crashes(route, sigma, rng) for route in flown])
-    table[name] = np.mean([route.length for route in flown]), least.min(), np.sum(least < 5.5), expected, seen
-    print("{:<9} {:6.1f} m {:11.1f} m {:10d} of 40 {:20.0f} {:11.0f}".format(name, *table[name]))
-assert table["way 2"][3] > 1.2 * table["way 3"][3]
-
-# %% [markdown]
-# Way 2 lets 7 of 40 routes into the zone, down to 3.5 m, where its price has its dip. It gains 2 m of length and pays
-# with a third more touches. (Two notes. On plain A* one flight touches more than once, so the share of flights is
-# below the expected number. Elsewhere it is a little above: Eq. 6 takes the margin for constant, and a UAV that turns
-# towards a wall comes nearer with up to 5 m/s.)
-#
-# Way 1 gets the first eight pairs only; it is slow, since with a price of 0 somewhere there is no estimate left.
-
-# %% tags=["nbval-check-output"]
-worked = [work_price(city, now, goal) for _, goal in blocked[:8]]
-routes["way 1"] = [astar(city, *pair, price=price) for pair, (price, _) in zip(blocked, worked, strict=False)]
-for name in ("plain A*", "way 1"):
-    expected = np.mean([touches(route, sigma) for route in routes[name][:8]])
+ways = zip(("way 2", "sizes", "way 3"), [*size_prices(city, eastward), repare_price(city, eastward)], strict=True)
+for way, prices in ways:
+    flown = [astar(city, *pair, price=prices) for pair in grazing]
+    nearest = np.array([route.clearance(city) for route in flown])
     print(
-        f"{name:<9} {np.mean([r.length for r in routes[name][:8]]):6.1f} m, {expected:.1f} touches a flight (8 pairs)"
+        f"{way}: {np.mean([route.length for route in flown]):.1f} m on average, "
+        f"{np.sum(nearest < 5.5)} of 40 enter the zone, {nearest.min()} m from a wall at the nearest"
     )
-print(f"way 1 is cut off at 0 in {np.mean([share for _, share in worked]):.1%} of the free voxels")
-assert expected > 3
 
-# %%
-first = {"A*": routes["plain A*"][0], "way 1": routes["way 1"][0], "REPARE, way 3": routes["way 3"][0]}
-scene.show(city, first)
+# %% tags=["check"]
+assert len(grazing) == 40
+assert nearest.min() == 5.5
 
 # %% [markdown]
-# Where the wall lies behind the UAV its push helps, the price is cut off at 0, and metres there are free. So way 1
-# tours all the walls that it can find. From here on the price is way 3.
+# By way 2 four routes enter the zone, down to 3.5 m, where its price has the dip. With the sizes added three do, and no
+# deeper than 4.5 m. So the low price at the edge lets them in, and the dip draws them deeper. From here on the
+# price is way 3.
 #
-# ## Wider towards the wind
+# ## What does keeping off cost?
 #
-# A steady wind leaves a mean offset $\boldsymbol\mu$ that the autopilot doesn't take out. Then $3\sigma$ has to be
-# counted from where the UAV really is (notebook 02, Eq. 14), and on the way there. The zone is where
-#
-# $$ \min_{0 \le s \le 1} D(\mathbf x + s\,\boldsymbol\mu) < r + 3\sigma. \tag{7} $$
-#
-# Before a flat wall that widens it by $\max(0, -\boldsymbol\mu\cdot\mathbf n)$; between two walls both count.
-#
-# The zone in a wind to the east that holds the UAV 2 m off, 30 m above the ground. West of each building it is wider:
+# REPARE's Table 2 gives mean lengths over those of the potential field: 0.973 for REPARE, 0.952 for A\*. So its routes
+# are $0.973/0.952 = 1.022$ times as long as A\*'s. The $D_\text{min}$ of that table isn't given. We try two, on 300
+# random pairs. All intervals are 95 %, by drawing the pairs anew (bootstrap; the flights on one pair stay together):
 
 
 # %%
-mean = (2.0, 0.0, 0.0)
-mild = Wind((6.0, 0.0))
-keep = safe_distance("light", mild)
-pair = (2.5, 35.5, 30.5), (60.5, 50.5, 30.5)
-straight, widened = (
-    repare(city, *pair, disturbance=mild),
-    repare(city, *pair, disturbance=mild, mean_offset=mean),
-)
+def with_interval(values):
+    """Mean of values, one for each pair, with its interval."""
+    low, high = over_maps(np.mean, np.asarray(values)[:, None])
+    return f"{np.mean(values):.3f} [{low:.3f}, {high:.3f}]"
+
+
+pairs = city.random_pairs(300, 7, apart=40, min_clearance=4.5)
+direct = np.array([astar(city, *pair).length for pair in pairs])
+ratios = {load: [repare(city, *pair, load=load).length for pair in pairs] / direct for load in ("light", "heavy")}
+
+# %% tags=["nbval-check-output"]
+for load, ratio in ratios.items():
+    same = np.isclose(ratio, 1.0).mean()
+    print(
+        f"D_min = {safe_distance(load, 'mild')} m: length over A* {with_interval(ratio)}, equal on {same:.0%} of pairs"
+    )
+
+# %% [markdown]
+# One to three percent longer, as in the paper.   With 3.5 m half of
+# the routes aren't longer at all. And is the distance kept? On the grazing pairs:
+
+# %% tags=["nbval-check-output"]
+plain = [astar(city, *pair) for pair in grazing]
+repared = {name: [repare(city, *pair, load=a, disturbance=b) for pair in grazing] for name, (a, b) in cases.items()}
+for name, routes in repared.items():
+    print(f"{name:<23} never nearer than {min(route.clearance(city) for route in routes)} m")
+
+# %% [markdown]
+# Yes, on all 40 pairs: $\omega_0 = 2$ is high enough here.
+#
+# ## In gusts
+#
+# In REPARE's Fig. 11 a disturbed UAV hits a wall on A\*'s route. We fly many. `OffsetProcess` is chapter 02's model:
+# the offset from the route is a spring that noise shakes. Its natural frequency is $\omega_n = 1$ rad/s, our choice as
+# in chapter 02, and its standard deviation is $\sigma$ on each axis. The speed is $v = 5$ m/s. When the *centre* comes
+# nearer to an obstacle than the body radius $r = 0.5$ m, the UAV touches it, and the flight ends as a *crash*. $\sigma$
+# is that of the case, so $D_\text{min} - r = 3\sigma$.
+#
+# By Rice's formula of chapter 02 an offset crosses the room $u$ between body and wall $\nu$ times per second. On a
+# whole route the number of touches to be expected is
+#
+# $$ N = \int_\text{route} \nu(u)\,\frac{ds}{v}, \qquad \nu(u) = \frac{\omega_n}{2\pi}\, e^{-u^2/2\sigma^2}, \qquad
+#    u = D - r. \tag{9} $$
+#
+# > **Predict first.** The route keeps $3\sigma$. By the "3σ rule" 0.27 % of all offsets are larger, half of them
+# > towards a wall on one side. How many of 1 000 flights of about 20 s touch a wall?
+
+
+# %%
+def expected_touches(route, sigma, mean=(0.0, 0.0, 0.0)):
+    """Eq. 9: wall touches to be expected on a flight; with a mean offset, as seen from where the UAV is."""
+    index, metres = city.voxels_along(route.points)
+    room = city.distance(city.center_of(index) + mean, exact_within=20.0) - radius
+    return float(offsets.crossing_rate(np.maximum(room, 0.0), sigma) @ metres / 5.0)
+
+
+def per_thousand(routes, sigma, mean=(0.0, 0.0, 0.0)):
+    """Mean of Eq. 9 over routes, for 1 000 flights."""
+    return 1000 * np.mean([expected_touches(route, sigma, mean) for route in routes])
+
+
+def flights(routes, sigma, mean=(0.0, 0.0, 0.0)):
+    """50 flights on each route."""
+    gusts, options = OffsetProcess(sigma, mean=mean), {"flights": 50, "time_step": 0.1}
+    return [monte_carlo(one, city, LIGHT_QUADROTOR, gusts, rng=n, **options) for n, one in enumerate(routes)]
+
+
+# %% tags=["nbval-check-output"]
+rates = {}
+print(f"{'per 1 000 flights':<31} crashes, flown {'':<17} touches, Eq. 9")
+for name, sigma in sigmas.items():
+    rates[name] = {}
+    for planner, routes in {"A*": plain, "REPARE": repared[name]}.items():
+        rates[name][planner] = crash_rate(flights(routes, sigma))
+        print(f"{name:<23} {planner:<7} {rates[name][planner]!s:<32} {per_thousand(routes, sigma):5.1f}")
+
+
+def near_edge(routes, keep):
+    """Mean metres of routes within half a metre of the edge of their zone, and in all."""
+    along = [city.voxels_along(route.points) for route in routes]
+    near = [m[city.distance(city.center_of(i), exact_within=20.0) < keep + 0.5].sum() for i, m in along]
+    return f"{np.mean(near):.0f} of {np.mean([m.sum() for _, m in along]):.0f} m"
+
+
+print("light load, mild wind: REPARE within half a metre of its edge", near_edge(repared["light load, mild wind"], 3.5))
 
 # %% tags=["figure"]
-wider = city.clearance_along(mean, at_most=10.0)[:, :, 30] < keep
-zones = {"added for the wind": wider, "nearer than 3.5 m": (city.clearance < keep)[:, :, 30]}
-zones["building"] = city.occupied[:, :, 30]
-both_zones = {"route, 3.5 m all around": straight.points[:, :2], "route, wider for the wind": widened.points[:, :2]}
-ZONE_ROUTES = {"route, 3.5 m all around": plot.GREEN, "route, wider for the wind": plot.BLACK}
-ends = {"start": pair[0][:2], "goal": pair[1][:2]}
-plot.area_map(city, zones, paths=both_zones, points=ends, notes={"wind, mean\noffset 2 m →": (12, 62)},
-              title="Zones in wind to the east, 30.5 m above the ground",
-              colors={"added for the wind": plot.SKY, "nearer than 3.5 m": plot.YELLOW} | ZONE_ROUTES)  # fmt: skip
-
-# %% tags=["nbval-check-output"]
-seen = {}
-for push in (0.0, 1.0, 2.0):
-    mean = (push, 0.0, 0.0)
-    print(f"mean offset {push:g} m:", end="")
-    for name, counted in (("3.5 m all around", (0.0, 0.0, 0.0)), ("widened", mean)):
-        flown = [repare(city, *pair, disturbance=mild, mean_offset=counted) for pair in blocked]
-        seen[push, name] = 1000 * np.mean([touches(route, 1.0, mean=mean) for route in flown])
-        print(f"  {name} {np.mean([r.length for r in flown]):.1f} m, {seen[push, name]:.1f} touches per 1000", end=";")
-    print()
-assert seen[2.0, "3.5 m all around"] > 12 * seen[0.0, "widened"] > 12 * seen[2.0, "widened"]
-
-# %% [markdown]
-# Without the widening a mean offset of 1 m makes nearly four times as many touches, one of 2 m fifteen times. With it
-# there are a quarter fewer than without any wind, for a third of a metre of length: what is lost on the windward sides
-# is made up for, and on the lee sides the wind holds the UAV off.
-#
-# ## Table 2: longer than A*, shorter than the field
-#
-# REPARE's Table 2 compares mean length and time over random pairs, relative to the potential field. The lengths can be
-# met only with a field that moves on the same lattice of 26 moves ([notebook 05](06_potential_field.ipynb) tries six
-# fields). Here it is the default of `potential_field`: every occupied voxel within 5 m pushes. A thousand pairs, 40 m
-# or more apart, both ends 4.5 m or more from walls. Intervals are 95 %, by drawing pairs again (bootstrap). Each figure
-# is a ratio of mean lengths. Pairs on which the field doesn't arrive can't be compared with it; between A* and REPARE
-# all thousand count.
-
-
-# %%
-def ratio(ones, others, seed=8):
-    """Mean of the one over the mean of the other, with its 95 % interval over pairs drawn anew."""
-    ones, others = np.asarray(ones), np.asarray(others)
-    again = np.random.default_rng(seed).integers(len(ones), size=(2000, len(ones)))
-    low, high = np.percentile(ones[again].mean(axis=1) / others[again].mean(axis=1), [2.5, 97.5])
-    return ones.mean() / others.mean(), low, high
-
-
-thousand = city.random_pairs(1000, 8, apart=40, min_clearance=4.5)
-compared = {
-    "A*": [astar(city, *pair) for pair in thousand],
-    "potential field": [potential_field(city, *pair) for pair in thousand],
-    "REPARE": [repare(city, *pair) for pair in thousand],
-    "REPARE, 4.5 m": [repare(city, *pair, load="heavy") for pair in thousand],
-}
-arrives = np.array([route.reached for route in compared["potential field"]])
-length = {name: np.array([route.length for route in flown]) for name, flown in compared.items()}
-
-# %% tags=["nbval-check-output"]
-print(f"the potential field doesn't arrive on {np.mean(~arrives):.1%} of the pairs")
-searched = ("A*", "REPARE", "REPARE, 4.5 m")
-table2 = {name: ratio(length[name][arrives], length["potential field"][arrives]) for name in searched}
-table2 |= {f"{name}, over A*": ratio(length[name], length["A*"]) for name in searched[1:]}
-for name, printed in zip(table2, (0.952, 0.973, 0.973, 0.973 / 0.952, 0.973 / 0.952), strict=True):
-    print(f"{name:<22} {table2[name][0]:.3f} [{table2[name][1]:.3f}, {table2[name][2]:.3f}], paper {printed:.3f}")
-expanded = {name: sum(r.info["expanded"] for r in compared[name]) for name in ("A*", "REPARE")}
-print(f"expansions, REPARE/A*: {expanded['REPARE'] / expanded['A*']:.2f}")
-assert length["A*"].mean() < length["REPARE"].mean()
-assert table2["REPARE"][2] < 1
-assert abs(table2["A*"][0] - 0.952) < 0.01
-assert abs(table2["REPARE, 4.5 m"][0] - 0.973) < 0.01
-
-# %% [markdown]
-# Notebook 06 has slightly other figures: other pairs (seed 7), the mean of the pairs' ratios, and a ring with a fixed
-# price for REPARE. Both statistics, on both sets of pairs, with REPARE at 3.5 m:
-
-# %% tags=["nbval-check-output"]
-others = city.random_pairs(1000, 7, apart=40, min_clearance=4.5)
-planned = {8: [compared[name] for name in ("A*", "REPARE", "potential field")]}
-planned[7] = [[planner(city, *pair) for pair in others] for planner in (astar, repare, potential_field)]
-for seed, flown in planned.items():
-    ok = np.array([route.reached for route in flown[2]])
-    a, r, f = (np.array([route.length for route in routes_of]) for routes_of in flown)
-    of_means = a[ok].mean() / f[ok].mean(), r[ok].mean() / f[ok].mean(), r.mean() / a.mean()
-    of_pairs = (a / f)[ok].mean(), (r / f)[ok].mean(), (r / a).mean()
-    for kind, values in (("ratio of means", of_means), ("mean of ratios", of_pairs)):
-        print(f"seed {seed}, {kind}: A* {values[0]:.3f}, REPARE {values[1]:.3f}, REPARE/A* {values[2]:.3f}")
-    assert of_means[0] < of_pairs[0] < of_means[0] + 0.011
-
-# %% [markdown]
-# The statistic makes the difference, not the pairs. And the distance to keep:
-
-# %% tags=["nbval-check-output"]
-roomy = city.random_pairs(300, 8, apart=40, min_clearance=5.5)
-plain = [astar(city, *pair).length for pair in roomy]
-for load, disturbance in (("light", "none"), ("light", "mild"), ("heavy", "mild"), ("light", "heavy")):
-    flown = [repare(city, *pair, load=load, disturbance=disturbance) for pair in roomy]
-    value, low, high = ratio([route.length for route in flown], plain)
-    keep = flown[0].info["safe_distance"]
-    print(f"{load} load, {disturbance:<4} disturbance, D_min = {keep} m: REPARE/A* {value:.3f} [{low:.3f}, {high:.3f}]")
-
-# %%
-took = {name: sum(route.info["elapsed"] for route in flown) for name, flown in compared.items()}
-took["A*, straight estimate"] = sum(astar(city, *pair, heuristic="euclidean").info["elapsed"] for pair in thousand)
-for name, seconds in took.items():
-    print(f"{name:<22} {seconds / took['potential field']:.2f} of the potential field's time")
-
-# %% [markdown]
-# **Length.** A* is at 0.950 of the potential field, the paper's 0.952 lies inside of the interval. The paper doesn't
-# say which $D_\text{min}$ its table was made with, and for REPARE that decides. With 3.5 m ours is 1.4 % longer than
-# A*, with 4.5 m 2.2 %, as in the paper. Over the field that is 0.963, a hundredth below the paper's 0.973: pairs with
-# a long way round a building drop out of this column, since the field is trapped there. The order, A* before REPARE
-# before the field, holds on the lattice. (A field that may fly in any direction is shorter than both: notebook 06.)
-#
-# **Time.** We print it and claim nothing. A* with the octile estimate takes a fraction of what it takes with the
-# straight distance, at the same cost; a field that sums over voxels in a slow loop is slow, one that looks up a
-# distance is fast. "Shorter running time than the potential field" is a statement about a program, not about an
-# algorithm. What counts on every machine: REPARE expands 1.40 times as many nodes as A*.
-#
-# ## The same way there and back
-#
-# With `as_printed=True` the planner is the paper's: the cost of REPARE Eq. 13, a fixed $\omega$, a ring of 26 points,
-# the straight distance as the estimate. Notebook 05 shows why its routes depend on the direction. On the first hundred
-# of the thousand pairs:
-
-
-# %% tags=["nbval-check-output"]
-def there_and_back(**options):
-    """REPARE on the hundred pairs in both directions."""
-    return [(repare(city, one, other, **options), repare(city, other, one, **options)) for one, other in thousand[:100]]
-
-
-for omega in (0.1, 0.2):
-    printed, ours = there_and_back(penalty=omega, as_printed=True), there_and_back(penalty=omega)
-    gap = np.array([abs(there.length - back.length) for there, back in printed])
-    differ = gap > 1e-6
-    print(f"ω₀ = {omega}, as printed: {differ.sum()} of 100 pairs differ, by {gap[differ].mean():.1f} m on average,",
-          f"{gap.max():.1f} m at most")  # fmt: skip
-    largest = max(abs(there.cost - back.cost) for there, back in ours)
-    print(f"ω₀ = {omega}, additive: the costs of all pairs agree to 1e-9 m: {largest < 1e-9}")
-    assert largest < 1e-9
-
-# %% [markdown]
-# On a third of the pairs the printed cost flies another way back. (Notebook 05 has 44 and 40 of its hundred pairs, by
-# up to 5.4 m: the count depends on the pairs, the fault doesn't.)
-#
-# ## Table 3: how much resilience
-#
-# Before the flight REPARE's Table 3 says how much of the resilience system to switch on:
-
-# %% tags=["nbval-check-output"]
-print(f"{'':<10}", *(f"{load:<13}" for load in LOADS))
-for disturbance in DISTURBANCES:
-    print(f"{disturbance:<10}", *(f"{resilience_level(load, disturbance):<13}" for load in LOADS))
-
-# %% [markdown]
-# Sixteen entries look like sixteen decisions. They aren't: the table is an **additive score**. Give points to each
-# load and to each disturbance, add the two, and cut the sum at four thresholds. Whether such points exist is a
-# question of linear inequalities: in each entry the sum must reach its level's threshold and stay a point below the
-# next one. (Which points? That is an exercise.)
-
-
-# %%
-def is_additive(level_of):
-    """Whether points for loads and disturbances and four thresholds give these levels."""
-    above, bounds = [], []
-    for row, disturbance in enumerate(DISTURBANCES):
-        for column, load in enumerate(LOADS):
-            level = resilience.LEVELS.index(level_of(load, disturbance))
-            points = np.zeros(12)  # of four loads, four disturbances; then the four thresholds
-            points[[column, 4 + row]] = 1
-            for sign, threshold, bound in ((-1, level - 1, 0), (1, level, -1)):
-                if 0 <= threshold < 4:
-                    above.append(sign * (points - np.eye(12)[8 + threshold]))
-                    bounds.append(bound)
-    return linprog(np.ones(12), A_ub=above, b_ub=bounds).status == 0
-
-
-# %% tags=["nbval-check-output"]
-turned = {("light", "mild"): "advanced", ("light", "heavy"): "lower"}
-print("Table 3:", is_additive(resilience_level))
-print("with two entries changed:", is_additive(lambda *at: turned.get(at, resilience_level(*at))))
-assert is_additive(resilience_level)
-assert not is_additive(lambda *at: turned.get(at, resilience_level(*at)))
-
-# %% [markdown]
-# A score is easy to defend and easy to extend. Its weakness is that nobody says what a point is.
-#
-# Note 2 under the table adds a reason to stay on the ground: heavy rain may weigh more than the largest payload. Ours
-# is 1 kg, and 0.1 m² catch the drops:
-
-# %% tags=["nbval-check-output"]
-cloudburst = float(rain_force(100.0, LIGHT_QUADROTOR.rain_area))
-needed = LOADS["heavy"] * GRAVITY / cloudburst * 100
-print(f"100 mm/h press with {cloudburst:.3f} N, as {1000 * cloudburst / GRAVITY:.1f} g do")
-print(f"to weigh as much as {LOADS['heavy']:g} kg it has to rain {needed:,.0f} mm/h")
-assert needed > 30_000
-
-# %% [markdown]
-# Forty metres of water an hour: the note describes no rain ([01 wind and rain](01_wind_and_rain.ipynb)).
-#
-# ## Table 4: how far to keep off
-#
-# REPARE's Table 4 has three cases: light load in mild disturbance, *Intermediate*, 3.5 m; heavy load in mild,
-# *Advanced*, 4.5 m; light load in heavy, *Advanced*, 5.5 m. Two things don't fit. Table 3 calls the first case
-# *Lower* (we follow Table 3). And two *Advanced* cases have different distances, so **the distance is no function of
-# the factor**: one needs a second rule. We know two that give all three values. The first is arithmetic: with $L$ and
-# $D$ the numbers 0 to 3 of load and disturbance,
-#
-# $$ D_\text{min} = 2 + \tfrac12 L + D. \tag{8} $$
-#
-# The second is physical. What a gust can do depends on the thrust $T$ that is *left over* when the weight $m g$ is
-# carried:
-#
-# $$ D_\text{min} = \Bigl\lceil \xi_0 + c\,\frac{F_\text{gust}}{\sqrt{T^2 - (m g)^2}} \Bigr\rceil
-#    + \tfrac12 D_\text{uav}, \qquad \xi_0 = 1\text{ m},\; c = 8.5\text{ m}. \tag{9} $$
-#
-# Our vehicle (1.5 kg, 28 N), payloads, winds and the two constants were chosen so that it meets the three cases.
-
-# %% tags=["nbval-check-output"]
-printed = {("light", "mild"): 3.5, ("heavy", "mild"): 4.5, ("light", "heavy"): 5.5}
-print("D_min [m] by Eq. 8 / by Eq. 9 (g: grounded, * in Table 4)")
-print(f"{'':<9}", *(f"{load:>12}" for load in LOADS))
-for disturbance in DISTURBANCES:
-    entries = []
-    for load in LOADS:
-        both = [safe_distance(load, disturbance, reading=reading) for reading in ("table", "physical")]
-        mark = (
-            "*" if (load, disturbance) in printed else "g" if resilience_level(load, disturbance) == "grounded" else " "
-        )
-        entries.append(f"{both[0]:.1f} / {both[1]:.1f}{mark}")
-        assert printed.get((load, disturbance), both[0]) == both[0]
-        assert printed.get((load, disturbance), both[1]) == both[1]
-    print(f"{disturbance:<9}", *(f"{entry:>12}" for entry in entries))
-reserve = {load: float(LIGHT_QUADROTOR.loaded(LOADS[load]).horizontal_reserve()) for load in ("light", "heavy")}
-print(f"thrust left: {reserve['light']:.1f} N with a light load, {reserve['heavy']:.1f} N with a heavy one")
-
-# %% [markdown]
-# A heavy load leaves 13.5 N where a light one leaves 22.1 N: the same gust pushes farther. That is why two *Advanced*
-# cases differ, and why the load enters at all. Beyond the three cases the two rules part: three points don't fix
-# sixteen entries.
-#
-# Do routes keep these distances? In Fig. 12's pair and in the forty blocked ones:
-
-# %% tags=["nbval-check-output"]
-cases = {f"{load} load, {disturbance} disturbance": (load, disturbance) for load, disturbance in printed}
-kept = {}
-for name, (load, disturbance) in cases.items():
-    flown = [repare(city, *pair, load=load, disturbance=disturbance) for pair in [(notch, middle), *blocked]]
-    kept[name] = flown[0]
-    least = [route.clearance(city) for route in flown]
-    print(f"{name:<30} {flown[0].length:.1f} m, clearance {least[0]} m; least of all {len(flown)}: {min(least)} m")
-    assert min(least) == least[0] == printed[load, disturbance] == flown[0].info["safe_distance"]
-
-# %% [markdown]
-# To the centimetre, on all 41 pairs (the distances are half-integers in voxels of 1 m, so there is no rounding). What
-# can't be checked are the words about Figs 15 to 17, that one UAV is slow and another moderate: the paper gives no
-# dynamics.
-#
-# ## Figures 8 to 17
-#
-# *Figs 8 to 10*: three planners, no disturbance. The field's route is the longest, though its smallest clearance is no
-# larger than REPARE's:
-
-# %%
-far = (20, 8, 20), (80, 95, 60)
-quiet, plain, field = repare(city, *far, disturbance="none"), astar(city, *far), potential_field(city, *far)
-calm = {"REPARE, no disturbance": quiet, "A*": plain, "potential field": field}
-for name, route in calm.items():
-    print(f"{name:<22} {route.length:.1f} m, smallest clearance {route.clearance(city):.1f} m")
-assert plain.length < quiet.length < field.length
-assert field.clearance(city) <= quiet.clearance(city)
-scene.show(city, calm, safe_distance=quiet.info["safe_distance"])
-
-# %% [markdown]
-# *Figs 11 to 14*: the same three in gusts, out of the notch. A* flies half a metre from the wall. We push it off its
-# route with drawn offsets, $\sigma = 1$ m on each axis, until it is in a wall: the X of Fig. 11, a square here. The
-# potential field is trapped in the notch: the X of Fig. 12, another square. REPARE leaves it.
-
-
-# %%
-def blown(route, sigma, seed):
-    """A route as it is flown in gusts, up to where it meets a wall."""
-    fine = route.resample(0.5)
-    clock, pushed = offsets.offset_paths(sigma, route.length / 5.0, seed, count=3)
-    points = fine.points + np.stack([np.interp(fine.distance / 5.0, clock, axis) for axis in pushed], axis=1)
-    hit = ~city.is_free(points)
-    if not hit.any():
-        return replace(fine, points=points, planner=f"{route.planner} in gusts")
-    end = int(hit.argmax())
-    where = "({:.0f}, {:.0f}, {:.0f})".format(*points[end])
-    return Route(points[: end + 1], f"{route.planner} in gusts", reached=False, reason=f"hits a wall at {where}",
-                 info={"goal": route.points[-1]})  # fmt: skip
-
-
-flights = [blown(route, 1.0, 8) for route in (repare(city, notch, middle), astar(city, notch, middle))]
-trapped = potential_field(city, notch, middle)
-scene.show(city, flights[0], flights[1], trapped)
-
-# %% tags=["nbval-check-output"]
-print(trapped.reason)
-hits = {}
-for route in (astar(city, notch, middle), repare(city, notch, middle)):
-    ends = [blown(route, 1.0, seed).reached for seed in range(200)]
-    print(f"{route.planner:<6} {route.length:.1f} m, {route.clearance(city)} m clear:",
-          f"{200 - sum(ends)} of 200 flights hit a wall")  # fmt: skip
-    hits[route.planner] = 200 - sum(ends)
-assert hits == {"A*": 106, "REPARE": 1}
-assert not trapped.reached
-
-# %% [markdown]
-# *Figs 15 to 17*: the three cases of Table 4.
-
-# %%
-CASE_COLORS = dict(zip(cases, (plot.BLACK, plot.SKY, plot.ORANGE), strict=True))
-scene.show(city, kept, colors=CASE_COLORS)
-
-# %% tags=["figure"]
-figure, (above, along) = plot.new_panels(1, 2, width=11, height=4.4)
-ways = {name: route.points[:, :2] for name, route in kept.items()}
-plot.area_map(city, {"building": city.occupied[:, :, 30]}, paths=ways, points={"start": notch[:2], "goal": middle[:2]},
-              area=(45, 100, 5, 50), colors=CASE_COLORS, axes=above)  # fmt: skip
-metres = np.linspace(12, 44, 321)
-room = {name: np.interp(metres, *route.clearance_profile(city)) for name, route in kept.items()}
-plot.lines(metres, room, "distance flown [m]", "distance to the nearest obstacle [m]", y_range=(0, 12),
-           colors=CASE_COLORS, axes=along, limits={f"{route.info['safe_distance']} m": route.info["safe_distance"] for route in kept.values()})  # fmt: skip
+figure = plot.crash_rates(rates, least=1.0)
+figure.axes[0].set_title("Flights on 40 grazing pairs, gusts as strong as planned for")
+figure.axes[0].set_xlabel("crashes per 1 000 flights, with 95 % intervals")
 figure
 
-# %% [markdown]
-# ## In flight: the boundary
-#
-# The prediction may be wrong. REPARE 2.2.4 therefore compares the offsets that are observed with the boundary $\xi$
-# that was predicted: too small an offset costs only efficiency, too large a one is dangerous. How the boundary is
-# moved is left open. `ConditionCheck` raises it at once, to the next step above the offset, and lowers it by one step
-# only after a calm of 20 s: offsets below 0.8 times the *next lower* boundary. Two thresholds and a wait keep it from
-# fluttering (hysteresis).
-#
-# `Monitor` is REPARE 2.1.3: two controllers and somebody who chooses. When the boundary and half the body no longer
-# fit between route and wall, the *advanced* controller takes over. It flies at half the speed and is stiffer,
-# $\omega_n = 1.6$ instead of 1 rad/s, which makes offsets smaller by $1.6^{-3/2} = 0.49$. When there has been half a
-# metre to spare for 5 s, the *basic* controller comes back. (Under the stiff one offsets count twice as much. Otherwise
-# its own calm would be taken for the weather's, and the two would take turns.)
-#
-# Five minutes beside a wall, 4 m off. The calm wind was predicted with 2 m. From 60 to 110 s it is three times as
-# gusty.
-
-# %% tags=["nbval-check-output"]
-clock, loose = offsets.offset_paths(1.0, 300.0, 8, step=0.1)
-stiff = resilience.ADVANCED.natural_frequency
-_, tight = offsets.offset_paths(stiff**-1.5, 300.0, 9, step=0.1, natural_frequency=stiff)
-gustiness = np.interp(clock, [50, 60, 110, 120], [0.5, 1.5, 1.5, 0.5])
-check = ConditionCheck(predicted=2.0)
-monitor = Monitor(check, uav_diameter=1.0)
-seen, boundary = [], []
-for moment, level, by_basic, by_advanced in zip(clock, gustiness, loose[0], tight[0], strict=True):
-    offset = level * abs(by_advanced if monitor.controller is resilience.ADVANCED else by_basic)
-    monitor.observe(moment, offset, clearance=4.0)
-    seen.append(offset)
-    boundary.append(check.boundary)
-for change in (*check.log, *monitor.log):
-    print(f"{change.time:6.1f} s  {change.value!s:<9} {change.reason}")
-
-# %% tags=["figure"]
-assert [change.value for change in monitor.log] == ["advanced", "basic"]
-switches = {f"{change.value}\nfrom {change.time:.0f} s": change.time for change in monitor.log}
-observed = {"offset observed": seen, "boundary ξ": boundary, "σ under the basic controller": gustiness}
-plot.lines(clock, observed, "time in flight [s]", "offset and boundary [m]", places=switches,
-           limits={"room: 4 m less\nhalf the body": 3.5}, x_range=(0, 300), y_range=(0, 4.8))  # fmt: skip
+# %% tags=["check"]
+assert [round(rate["A*"].per_thousand) for rate in rates.values()] == [827, 836, 840]
+assert [round(rate["REPARE"].per_thousand) for rate in rates.values()] == [8, 10, 15]
+assert all(rate["REPARE"].low > 2.7 for rate in rates.values())
+assert all(50 * rate["REPARE"].high < 50 * rate["A*"].low for rate in rates.values())
 
 # %% [markdown]
-# The first gusts lift the boundary step by step; at 75 s it no longer fits, and the advanced controller takes over. In
-# the figure the offsets shrink at once, though it is as gusty as before. At 95 s the boundary comes down by a step: by
-# chance, 20 s were calm. The other steps follow when the gusts have ended, and at 141 s there is room again. The half
-# minute after the gusts is the price of not fluttering. (At a switch our offset jumps from one drawn path to another;
-# a real one can't.)
+# *Crashes of A\* and REPARE per 1 000 flights in Table 4's three cases, on a logarithmic scale.* On A\*'s routes five
+# of six flights crash, on REPARE's 8 to 15 of 1 000, with intervals from 4 to 25. The rule's 2.7 (1.35 on one side)
+# speaks of one moment, and a flight has many. Eq. 9 with $u = 3\sigma$ for all of the 20 s predicts 35, but only a
+# third of a route runs along the edge of the zone. For A\* Eq. 9 is no good, in the first case even too small. Rice's
+# formula takes the room for constant: where a route comes to a wall, an offset that is already beyond the wall isn't
+# counted.
 #
-# ## In flight: a new plan
-#
-# Given a function of time as its disturbance, `repare` looks every second, and where the conditions have changed it
-# plans the rest of the route anew. Mild wind that becomes heavy six seconds after take-off:
+# **Is A\* a fair opponent?** We chose the pairs because it grazes a wall there. But of several shortest ways it takes
+# any. If a metre in the zone costs a millionth more, lengths stay the same and only ties are broken:
 
 # %% tags=["nbval-check-output"]
-whole = {f"planned for {kind}": repare(city, *far, disturbance=kind) for kind in ("mild", "heavy")}
-changing = repare(city, *far, disturbance=lambda moment: "mild" if moment < 6.0 else "heavy")
-for plan in changing.info["plans"]:
-    place = ", ".join(f"{part:.1f}" for part in plan.place)
-    print(f"{plan.time:4.1f} s at ({place}): {plan.conditions}, D_min = {plan.safe_distance} m")
-for name, route in {**whole, "REPARE, replanned": changing}.items():
-    print(f"{name:<18} {route.length:.1f} m")
-grounded = repare(city, *far, load="heavy", disturbance=lambda moment: "mild" if moment < 6.0 else "heavy")
-print("heavy load:", grounded.reason)
-assert whole["planned for mild"].length < changing.length < whole["planned for heavy"].length
-assert not grounded.reached
+millionth = planners.penalty_zone(city, 3.5, penalty=1e-6)
+tidy = [astar(city, *pair, price=millionth) for pair in grazing]
+longer = sum(route.length - other.length for route, other in zip(tidy, plain, strict=True))
+still = sum(route.clearance(city) < 3.5 for route in tidy)
+print(f"A*, ties broken away from walls: {longer:.1f} m longer in all, {still} of 40 still enter the zone")
+print("light load, mild wind: crashes", crash_rate(flights(tidy, sigmas["light load, mild wind"])))
+
+# %% [markdown]
+# 406 [244, 504] of 827 crashes are left: about 40 to 70 % come from how A\* breaks ties. Now
+# the pair of Fig. 12, 200 flights in the first case:
+
+# %% tags=["nbval-check-output"]
+calm = OffsetProcess(sigmas["light load, mild wind"])
+for route in (astar(city, notch, middle), repare(city, notch, middle)):
+    rate = crash_rate(monte_carlo(route, city, LIGHT_QUADROTOR, calm, rng=8, flights=200, time_step=0.1))
+    print(f"{route.planner:<6} {route.length:.1f} m long, {route.clearance(city)} m from walls: crashes {rate}")
+trapped = potential_field(city, notch, middle)
+print("potential field:", trapped.reason)
 
 # %%
-scene.show(city, {"REPARE, replanned": changing, **whole}, safe_distance=5.5,
-           colors={"planned for mild": plot.BLACK, "planned for heavy": plot.ORANGE})  # fmt: skip
+blown = {
+    route.planner: fly(route, city, LIGHT_QUADROTOR, calm, rng=3)
+    for route in (astar(city, notch, middle), repare(city, notch, middle))
+}
+print({planner: flight.outcome for planner, flight in blown.items()})
+scene.show(city, {"potential field": trapped}, flights=blown)
+
+# %% tags=["check"]
+assert not trapped.reached
+assert [flight.outcome for flight in blown.values()] == ["crashed", "arrived"]
 
 # %% [markdown]
+# *Two flights in gusts: on A\*'s route (blue) one ends at the X; on REPARE's (green) the other arrives. The potential
+# field's way (orange) stays in the notch.*
+#
 # ## What should a metre cost?
 #
-# REPARE's zone has an edge. A metre at 3.4 m from a wall costs several times as much as one at 3.6 m. A gust knows no
-# such edge. What should it cost, then? Say a touch is as bad as $\lambda$ metres of detour. The route is to have the
-# least
+# REPARE's price has an edge at $D_\text{min}$. A gust knows none. What *should* a metre cost? Let a touch be as bad as
+# $\Lambda$ metres of detour. The best route, of the length $L$, has the least
 #
-# $$ C = L + \lambda\,P(\text{touch}) \le L + \lambda N
-#      = \int \Bigl(1 + \frac{\lambda}{v}\,\nu(u)\Bigr) ds, \tag{10} $$
+# $$ C = L + \Lambda\,P(\text{touch}) \;\le\; L + \Lambda N
+#      = \int_\text{route} \Bigl(1 + \frac{\Lambda}{v}\,\nu(u)\Bigr) ds. \tag{10} $$
 #
-# since the chance of at least one touch is never above the expected number $N$ of Eq. 6. The integrand *is* the
-# price of a metre:
+# The probability of at least one touch is never larger than the number to be expected, hence the inequality. (It holds
+# for the true number. Eq. 9 is near it on routes that keep off walls, not on those that graze.) $P$ isn't a sum over
+# metres, so we plan for the bound. For rare touches the two are nearly equal. The integrand *is* a price per metre:
 #
-# $$ p(\mathbf x) = 1 + \lambda\,\frac{\omega_n}{2\pi v}\,
-#    \exp\Bigl(-\frac{u^2}{2\sigma^2}\Bigr), \qquad u = D - r - \max(0, -\boldsymbol\mu\cdot\mathbf n). \tag{11} $$
+# $$ p(\mathbf x) = 1 + \Lambda\,\frac{\omega_n}{2\pi v}\, \exp\Bigl(-\frac{u^2}{2\sigma^2}\Bigr), \qquad u = D - r. \tag{11} $$
 #
-# Every symbol can be measured but $\lambda$, and that one is a decision: 3000 m here. The price is at least 1, so A*
-# stays exact. It is smooth, so straight lines at any angle (`shortcut`) can weigh detour against distance all along.
-# Who passes faster pays less.
+# `hazard_astar` plans with it. (A rate of failures is called a *hazard*.) $\sigma$, $\omega_n$ and $v$ can be measured.
+# $\Lambda$ is a decision. The library takes 3000 m: ten minutes of flight to avoid one touch.
+#
+# > **Predict first.** How much farther out does the price reach if a touch is a hundred times as bad?
+#
+# Ask where a metre costs 2, one for the length and one for the danger. There
+# $\Lambda\,\omega_n/(2\pi v) = e^{u^2/2\sigma^2}$, so $u = \sigma\sqrt{2\ln(\Lambda\,\omega_n/2\pi v)}$.
 
-# %%
-occupied = np.zeros((16, 3, 3), bool)
-occupied[:2] = True
-wall = City(occupied)
-away = np.linspace(0.5, 12, 400)
-curves, steps, colors = {}, {}, {}
-for name, case in cases.items():
-    now = flight_conditions(*case)
-    sigma = (now.safe_distance - 0.5) / 3
-    hazard, zone = f"price by hazard, σ = {sigma:.2f} m", f"price of REPARE, {name}"
-    curves[hazard] = 3000 / 5 * offsets.crossing_rate(away - 0.5, sigma)
-    centre, extra = wall.clearance[2:, 1, 1], repare_price(wall, now)[2:, 1, 1] - 1
-    steps[zone] = np.column_stack([centre, extra])[extra > 0]
-    colors |= {hazard: CASE_COLORS[name], zone: CASE_COLORS[name]}
-plot.lines(away, curves, "distance to the wall [m]", "price of a metre, above 1", points=steps, log="y", colors=colors,
-           x_range=(0, 10), y_range=(1e-3, 1e3))  # fmt: skip
+# %% tags=["nbval-check-output"]
+for worth in (300, 3000, 30_000):
+    print(f"Λ = {worth:>6} m: a metre costs 2 at u = {math.sqrt(2 * math.log(worth / (2 * math.pi * 5))):.2f} σ")
 
 # %% [markdown]
-# (Marks: REPARE, nothing from $D_\text{min}$ on.) At $D_\text{min}$ itself, three standard deviations from the body,
-# Rice still charges a metre for a metre, and REPARE nothing. Half a metre from the wall REPARE charges more than the
-# touches are worth; nobody goes there anyway.
+# A factor of a hundred moves it from $2.1\sigma$ to $3.7\sigma$: the *reach* grows only with the root of a logarithm.
+# With the library's $\Lambda$ it is about REPARE's $3\sigma$; but "costs 2" is an arbitrary mark.
+
+# %% tags=["figure"]
+away = np.linspace(0.5, 8, 400)
+now = flight_conditions("light", "mild")
+wall = planners.repulsion(away, now.safe_distance**3 / 4, now.safe_distance)
+zone = np.where(away < 3.5, 3 + 2 * (wall + now.push + now.load_ratio), 1.0)
+smooth = 1 + 3000 / 5 * offsets.crossing_rate(away - radius, 1.0)
+plot.lines(
+    away,
+    {"REPARE (Eq. 8)": zone, "hazard A* (Eq. 11)": smooth},
+    "distance to the wall D [m]",
+    "price of a metre",
+    log="y",
+    places={"D_min": 3.5},
+    x_range=(0, 8),
+    y_range=(0.8, 1000),
+    title="Light load, mild wind (gusts towards every wall), σ = 1 m",
+)
+
+# %% [markdown]
+# *Two prices of a metre beside a wall, on a logarithmic scale.* From 0.6 to 3.1 m from the wall REPARE charges less
+# than the touches are worth at $\Lambda = 3000$ m, by up to a factor of 7. From there to its edge it charges more.
+
+# %% tags=["check"]
+higher = away[smooth > zone]
+assert abs(higher[0] - 0.59) < 0.03
+assert abs(higher[higher < 3.4].max() - 3.05) < 0.06
+assert round((smooth / zone).max()) == 7
+
+# %% [markdown]
 #
 # ### The comparison
 #
-# Sixty blocked pairs, Table 4's three cases, $3\sigma = D_\text{min} - r$. REPARE, hazard A* with any angle,
-# and, to be fair, two more: REPARE with any angle, and the same with a zone 1 m wider. The last column is for gusts
-# 1.5 times as strong as everybody assumed.
+# Hazard A\*'s routes are straightened, and its price reaches beyond $D_\text{min}$. We give both to REPARE, too, one
+# after the other: *any angle* straightens its routes (`shortcut`), and *1σ wider* also plans with $D_\text{min} +
+# \sigma$. All on the 40 grazing pairs. (In the third case 8 of them have an end in the wider zone.)
 
 # %%
-drawn = city.random_pairs(140, 8, apart=40, min_clearance=6.5)
-sixty = [pair for pair in drawn if astar(city, *pair).clearance(city) <= 0.5][:60]
-shortest = np.array([astar(city, *pair).length for pair in sixty])
-results = {}
-for name, (load, disturbance) in cases.items():
-    keep = safe_distance(load, disturbance)
-    step = repare_price(city, flight_conditions(load, disturbance))
-    wide = planners.penalty_zone(city, keep + 1.0, penalty=10.0)
-    lattice = [repare(city, *pair, load=load, disturbance=disturbance) for pair in sixty]
-    results[name] = {
-        "REPARE": lattice,
-        "REPARE, any angle": [shortcut(route, city, price=step) for route in lattice],
-        "the same, zone 1 m wider": [shortcut(astar(city, *pair, price=wide), city, price=wide) for pair in sixty],
-        "hazard A*, any angle": [hazard_astar(city, *pair, sigma=(keep - 0.5) / 3) for pair in sixty],
+shortest = np.array([route.length for route in plain])
+rivals = {}
+for name, case in cases.items():
+    now = flight_conditions(*case)
+    widths = now.safe_distance, now.safe_distance + sigmas[name]
+    price, wide = (repare_price(city, now._replace(safe_distance=width)) for width in widths)
+    rivals[name] = {
+        "REPARE": repared[name],
+        "REPARE, any angle": [shortcut(route, city, price=price) for route in repared[name]],
+        "… and 1σ wider": [shortcut(astar(city, *pair, price=wide), city, price=wide) for pair in grazing],
+        "hazard A*, any angle": [hazard_astar(city, *pair, sigma=sigmas[name]) for pair in grazing],
     }
-print(len(sixty), "pairs")
 
 # %% tags=["nbval-check-output"]
-print(f"{'':<27}length/A* [95 %]        clearance: least, median   touches per 1000 flights   σ · 1.5")
-found = {}
-for name, by_planner in results.items():
-    sigma = (safe_distance(*cases[name]) - 0.5) / 3
-    print(f"{name}, σ = {sigma:.2f} m")
-    for planner, flown in by_planner.items():
-        share = ratio([route.length for route in flown], shortest)
-        least = [route.clearance(city) for route in flown]
-        expected = [1000 * np.mean([touches(route, factor * sigma) for route in flown]) for factor in (1.0, 1.5)]
-        found[name, planner] = share[0], *expected
-        print("  {:<25}{:.3f} [{:.3f}, {:.3f}]".format(planner, *share),
-              f"{min(least):10.1f} m, {np.median(least):.1f} m {expected[0]:21.1f} {expected[1]:18.0f}")  # fmt: skip
-for name in results:
-    assert found[name, "hazard A*, any angle"][0] < found[name, "REPARE"][0] - 0.03
-    assert found[name, "hazard A*, any angle"][1] < found[name, "REPARE"][1] / 20
-    assert found[name, "hazard A*, any angle"][2] < found[name, "REPARE"][2] / 5
+compared = {}
+for name, by_planner in rivals.items():
+    print(f"{name:<27} length over A*            touches per 1 000 (Eq. 9)")
+    for planner, routes in by_planner.items():
+        share = np.array([route.length for route in routes]) / shortest
+        compared[name, planner] = share.mean(), per_thousand(routes, sigmas[name])
+        print(f"  {planner:<25} {with_interval(share)} {compared[name, planner][1]:>12.2f}")
+print("first case, any angle, near the edge:", near_edge(rivals["light load, mild wind"]["REPARE, any angle"], 3.5))
+
+# %% tags=["check"]
+for name in cases:
+    first, angled, last = (compared[name, p] for p in ("REPARE", "REPARE, any angle", "hazard A*, any angle"))
+    assert 0.04 < first[0] - last[0] < 0.065
+    assert 32 < first[1] / last[1] < 70
+    assert 1.7 < first[1] / angled[1] < 2.4
+    assert 35 < angled[1] / compared[name, "… and 1σ wider"][1] < 75
+assert near_edge(rivals["light load, mild wind"]["REPARE, any angle"], 3.5) == "15 of 95 m"
+edge = now.safe_distance + sigmas[name]
+assert sum(min(city.distance(city.center_of(city.cell_of(p))) for p in pair) < edge for pair in grazing) == 8
 
 # %% [markdown]
-# The hazard routes are 4 to 6 % shorter than REPARE's and touched less often by a factor of 20 and more. But look at
-# what does it. Most of the *length* comes from flying at any angle, which REPARE can have too. (In the third case a
-# straight line then cuts a corner of the soft zone, at 5.1 m.) Most of the *safety* comes from one more metre of
-# distance. With both of them REPARE comes close: in the first case it is even a little safer, and a little longer. What
-# is left for the smooth price is that nobody has to know how wide the zone should be, and that it spends distance where
-# it is cheap: in the second case it is shorter by 2 %, in the third touched three times less for the same length.
+# The hazard routes are about 4 to 6 % shorter than REPARE's, and by Eq. 9 they are touched 30 to 70 times less. The
+# *length* comes from flying at any angle. That about halves the touches, too, because straight legs meet the edge of
+# the zone at corners only: 15 m of a route run within half a metre of it in place of 33 m (first case). REPARE's zone
+# $1\sigma$ wider then divides them by 40 to 70.
 #
-# A warning about the yardstick. Eq. 6 measures by the noise model that the hazard planner minimises: same formula, same
-# $\sigma$. It would be odd if it didn't win. When gusts are 1.5 times as strong as assumed, all of them are touched
-# far more often, and hazard stays well ahead of REPARE. Whether it does in simulated flights, with a controller and
-# turns, is a question for notebook 13.
+# But hazard is planned for $L + \Lambda N$ and judged by $L$ and $N$. So change the yardstick. We fly in gusts 1.5
+# times as strong as planned for, and compare it with *1σ wider* pair by pair: the interval is that of the mean
+# *difference*.
 
-# %%
-name = "light load, heavy disturbance"
-both = "REPARE", "hazard A*, any angle"
-pairs_of_routes = list(zip(*(results[name][planner] for planner in both), strict=True))
-most = max(range(len(sixty)), key=lambda i: pairs_of_routes[i][0].length - pairs_of_routes[i][1].length)
-compared_routes = dict(zip(both, pairs_of_routes[most], strict=True))
-plot.profile(city, astar(city, *sixty[most]), compared_routes, safe_distance=5.5)
+# %% tags=["nbval-check-output"]
+for name, by_planner in rivals.items():
+    both = [by_planner[planner] for planner in ("… and 1σ wider", "hazard A*, any angle")]
+    wide, smooth = (np.array([20 * run.crashed.sum() for run in flights(one, 1.5 * sigmas[name])]) for one in both)
+    metres = [a.length - b.length for a, b in zip(*both, strict=True)]
+    print(f"{name}: crashes per 1 000: 1σ wider {wide.mean():g}, hazard {smooth.mean():g}")
+    print(f"   difference: crashes {with_interval(wide - smooth)}, length {with_interval(metres)} m")
 
 # %% [markdown]
+# No difference in crashes is shown: all three intervals hold 0. Hazard's routes are 0.5 to 2 m shorter. So the derived
+# price isn't shown to be safer than a zone that is wide enough, but its routes are shorter. All this holds for one
+# *kind* of noise. Chapter [13](13_flying_in_gusts.ipynb) flies with a controller and in gusts of wind.
+#
+# > **Try it.** Plan the notch with $\Lambda$ = 30, 3000 and 300 000 m. How do length and clearance change?
+
+# %% tags=["try-it"]
+for own_worth in (30, 3000, 300_000):
+    tried = hazard_astar(city, notch, middle, sigma=1.0, crash_price=own_worth)
+    print(f"Λ = {own_worth:>7} m: {tried.length:.1f} m long, {tried.clearance(city):.1f} m from walls")
+
+# %% [markdown]
+# Each factor of a hundred buys one or two metres of distance, for two or three of length.
+#
+# ## A steady wind: wider on one side
+#
+# A steady wind may hold the UAV off its route all the time, by the *mean offset* $\boldsymbol\mu$. It has to keep its
+# distance all the way from $\mathbf x$ to $\mathbf x + \boldsymbol\mu$:
+#
+# $$ O_\text{risk} = 1 \quad\text{where}\quad \min_{0 \le s \le 1} D(\mathbf x + s\,\boldsymbol\mu) < D_\text{min}. \tag{12} $$
+#
+# Before a flat wall the zone is wider by the part of $\boldsymbol\mu$ towards the wall. With 2 m to the east, in the
+# first case:
+
+# %% tags=["nbval-check-output"]
+mean = (2.0, 0.0, 0.0)
+for name, counted in {"zone as before": (0.0, 0.0, 0.0), "zone widened": mean}.items():
+    routes = [repare(city, *pair, mean_offset=counted) for pair in grazing]
+    long, touched = np.mean([route.length for route in routes]), per_thousand(routes, 1.0, mean)
+    print(f"{name:<14}: {long:.1f} m, crashes {crash_rate(flights(routes, 1.0, mean))}, Eq. 9: {touched:.1f}")
+
+# %% [markdown]
+# Without the widening the mean offset makes about ten times as many crashes: 90 [48, 158] against 8 [4, 19] per 1 000
+# without wind. With it they are as few as without wind, and routes are less than half a metre longer.
+#
+# ## In flight: a boundary and a new plan
+#
+# A prediction may be wrong. So REPARE compares the observed offsets with the boundary $\xi$, and when $\xi$ moves, it
+# plans the rest of the route again. How $\xi$ moves is left open. It should rise at once and fall late, or it jumps up
+# and down with every gust. (This is *hysteresis*; exercise 07.4.) `repare` does only the
+# second half: it gets the *disturbance* as a function of time and looks at it at the first waypoint after each second.
+# Mild wind becomes heavy after six seconds:
+
+# %% tags=["nbval-check-output"]
+far = (20, 8, 20), (80, 95, 60)
+changing = repare(city, *far, disturbance=lambda seconds: "mild" if seconds < 6.0 else "heavy")
+for plan in changing.info["plans"]:
+    print(f"{plan.time:4.1f} s: {plan.conditions}, D_min = {plan.safe_distance} m")
+unchanged = repare(city, *far)
+print(f"mild all the way {unchanged.length:.1f} m, planned anew {changing.length:.1f} m")
+
+# %% tags=["figure"]
+place = changing.info["plans"][1].place
+plot.area_map(
+    city,
+    {"building at the height of the change": city.occupied[:, :, int(city.cell_of(place)[2])]},
+    paths={"planned at first, for mild wind": unchanged.points[:, :2], "flown, with the new plan": changing.points[:, :2]},
+    points={"start": far[0][:2], "goal": far[1][:2], "wind becomes heavy": place[:2]},
+    title="Planned again when the wind changes",
+    colors={"building at the height of the change": "0.6", "wind becomes heavy": plot.PINK,
+            "planned at first, for mild wind": plot.BLUE, "flown, with the new plan": plot.GREEN},
+)  # fmt: skip
+
+# %% tags=["check"]
+assert unchanged.length < changing.length
+assert len(changing.info["plans"]) == 2
+until = int(np.searchsorted(changing.distance, 5.0 * changing.info["plans"][1].time))
+assert np.allclose(unchanged.points[:until], changing.points[:until])
+common = int((~np.isclose(unchanged.points[:60], changing.points[:60]).all(axis=1)).argmax()) - 1
+assert round(unchanged.distance[common] - 5.0 * changing.info["plans"][1].time) == 17
+assert min(city.clearance[tuple(city.cell_of(point))] for point in unchanged.points[until : common + 1]) == 5.5
+
+# %% [markdown]
+# *From above: the two routes part 17 m after the mark. Until then the first plan keeps 5.5 m, too. Then it goes
+# down to 3.5 m, and the new one doesn't.*
+#
 # ## Turn it yourself
 #
-# Disturbance, load and $\omega_0$. The map shows the zone 30.5 m above the ground (white: outside of it, a metre costs
-# a metre), the title its $D_\text{min}$, the line the way out of the notch. Which settings leave the UAV on the ground?
-# And what is left of the distance when $\omega_0$ falls to 0.1, and to 0?
-
+# Out of the notch, with a light load in a wind of 9 m/s, 30.5 m above the ground. Choose the weight $\omega_0$, where
+# the wind blows to, and whether the zone is widened for a mean offset of 2 m downwind (Eq. 12). At which weight does
+# the route enter the zone? In which wind does the wider zone make it longer, and why?
 
 # %%
-def turn(disturbance="mild", load="light", omega=2.0):
-    """REPARE out of the notch, seen from above, with its zone."""
-    now = flight_conditions(load, disturbance)
-    zone = np.where(city.clearance < now.safe_distance, repare_price(city, now, penalty=omega), np.nan)
-    route = repare(city, notch, middle, load=load, disturbance=disturbance, penalty=omega)
-    shown = [route] if route.reached else []
-    figure = plot.section(city, 30.5, zone, *shown, label="price of a metre in the zone", norm=LogNorm(1, 1000))
-    figure.axes[0].set_facecolor("white")  # free air outside of the zone costs 1
-    plot.draw_map(figure.axes[0], city, np.where(city.occupied[:, :, 30], 0.0, np.nan), "gray")
-    text = f"D_min = {now.safe_distance} m, resilience {resilience_level(load, disturbance)}"
-    text += f", keeps {route.clearance(city):.1f} m" if route.reached else f"\n{route.reason}"
-    figure.axes[0].set_title(text, fontsize=10)
+TOWARDS = {"north": (0.0, 9.0), "south": (0.0, -9.0)}
+
+
+@cache
+def extra_price(zone, wind):
+    """What a metre costs above 1 in each voxel, with ω₀ = 1."""
+    held = np.array(TOWARDS[wind]) * 2 / 9 if zone == "wider downwind" else (0.0, 0.0)
+    return (repare_price(city, flight_conditions("light", Wind(TOWARDS[wind])), mean_offset=held) - 1) / 2
+
+
+def turn(zone="as in Eq. 2", omega=2.0, wind="north"):
+    """The route out of the notch and its zone, from above."""
+    price = 1 + omega * extra_price(zone, wind)
+    route = astar(city, notch, middle, price=price)
+    return drawn_zone(np.where(price > 1, price, np.nan)[:, :, 30], route)
+
+
+# %% tags=["figure"]
+def drawn_zone(values, route):
+    """The map of the notch with what a metre costs."""
+    figure = plot.value_map(
+        city, values, "price of a metre in the zone", paths={"route": route.points[:, :2]}, area=(40, 100, 2, 58),
+        points={"start": notch[:2], "goal": middle[:2]}, norm=LogNorm(1, 30), colors={"route": plot.GREEN},
+        title=f"{route.length:.1f} m long, {route.clearance(city):.1f} m from walls (white: price 1; dark: buildings)",
+    )  # fmt: skip
+    figure.axes[0].set_facecolor("white")
+    figure.axes[0].images[0].set_cmap("YlOrRd")
+    built = np.where(city.occupied[:, :, 30], 0.3, np.nan)
+    plot.draw_map(figure.axes[0], city, built, "gray", vmin=0.0, vmax=1.0)
     return figure
 
 
-# %%
-settings = {"disturbance": list(DISTURBANCES), "load": ["light", "moderate", "heavy"], "omega": [0.0, 0.1, 2.0]}
-start = {"disturbance": "mild", "load": "light", "omega": 2.0}
-plot.sliders(turn, title="REPARE and its zone", labels={"omega": "ω₀"}, start=start, progress=False, **settings)
+zones = ["as in Eq. 2", "wider downwind"]
+weights = [0.02, 0.2, 2.0]
+plot.sliders(turn, title="REPARE's zone and route", labels={"omega": "ω₀", "wind": "wind blows to"}, jobs=1, progress=False,
+             start={"zone": zones[0], "omega": 2.0, "wind": "north"}, zone=zones, omega=weights, wind=list(TOWARDS))  # fmt: skip
 
 # %% [markdown]
+# *The route out of the notch and the price around it.* With $\omega_0 = 0.02$ it enters the zone in both winds, with
+# 0.2 in neither. With $\omega_0 = 2$ and the wider zone it is 77.5 m long in wind to the north and 74.6 m in wind to
+# the south: the route passes south of the building, where the wind to the north blows onto the wall.
+
+# %% tags=["check"]
+clear = {}
+for wind in TOWARDS:
+    for weight in weights:
+        route = astar(city, notch, middle, price=1 + weight * extra_price(zones[0], wind))
+        clear[wind, weight] = route.clearance(city)
+assert all((value < 5.5) == (weight == 0.02) for (_, weight), value in clear.items())
+longest = {wind: astar(city, notch, middle, price=1 + 2 * extra_price(zones[1], wind)).length for wind in TOWARDS}
+assert max(longest, key=longest.get) == "north"
+assert (round(longest["north"], 1), round(longest["south"], 1)) == (77.5, 74.6)
+
+# %% [markdown]
+# ## Remember
+#
+# - REPARE is A\* with a price: a metre in the zone, nearer to an obstacle than $D_\text{min}$, costs $1 + \omega$.
+# - A price isn't a limit. If you need a limit, ask for one.
+# - The work of a force is the same on all routes. In the size of a sum of forces (way 2) a wind towards a wall cancels
+#   the wall. Reasons have to add up.
+# - $3\sigma$ at each moment isn't 99.73 % of the flights: 8 to 15 of 1 000 flights crashed on our grazing pairs.
+# - A price can be derived: what a touch is worth, times how often gusts touch. Beside a zone $1\sigma$ wider it showed
+#   no fewer crashes, but shorter routes.
+# - Judge a planner also by a yardstick that it doesn't minimise, and compare pair by pair.
+#
 # ## What the paper says, what we find
-
-# %% tags=["nbval-check-output"]
-print("REPARE Table 2: seed 8, 1000 pairs,", *(f"{k} {v:.3f} [{a:.3f}, {b:.3f}]" for k, (v, a, b) in table2.items()))
-print("REPARE Table 4:", *(f"{route.info['safe_distance']} m: {route.length:.1f} m" for route in kept.values()))
-print("touches per 1000 flights at σ and 1.5 σ, seed 8, 60 pairs:")
-for name in results:
-    rows = [found[name, planner] for planner in both]
-    print(f"  {name:<30}", *(f"{p} {v[0]:.3f}, {v[1]:.1f}, {v[2]:.0f};" for p, v in zip(both, rows, strict=True)))
-assert [round(table2[name][0], 3) for name in table2] == [0.950, 0.958, 0.963, 1.014, 1.022]
-assert [round(route.length, 1) for route in kept.values()] == [71.2, 73.2, 74.6]
-
-# %% [markdown]
+#
 # | REPARE | says | we find |
 # |---|---|---|
-# | Table 2 | lengths 0.952 (A\*), 0.973 (REPARE), 1 (field) | 0.950, 0.963 (4.5 m): order holds on the lattice |
-# | | REPARE/A\* 1.022 | with 4.5 m 1.022 [1.020, 1.023], with 3.5 m 1.014 [1.013, 1.015]: reached |
-# | | (whether the field always arrives isn't said) | it is trapped on 15.3 % of the thousand pairs |
-# | | times 0.558, 0.655, 1 | a statement about a program; expansions REPARE/A\* 1.40 |
-# | Table 3 | sixteen entries | an additive score |
-# | | note 2: rain may outweigh the load | no: it takes 39 metres of water an hour |
-# | Table 4 | 3.5, 4.5, 5.5 m | kept exactly, on 41 pairs each |
-# | | the first case is *Intermediate* | Table 3 says *Lower* |
-# | | (distance by factor) | two *Advanced* differ: thrust left over, 22.1 and 13.5 N |
-# | Fig. 11 | A\* crashes when disturbed | yes: 106 of 200 flights, REPARE 1 |
-# | Fig. 12 | the field is trapped, REPARE isn't | yes: 71.2 m, 3.5 m clear |
-# | Figs 15–17 | slow, moderate | can't be checked: no dynamics given |
-# | Eqs 11–13 | the cost of a route | depends on the direction: 38 and 33 of 100 pairs |
-# | Eqs 14–16 | a sum of forces decides | as work: the same for all routes; as a size: cancels in the worst wind |
-# | | | as reasons that add up (our Eq. 5): keeps $D_\text{min}$ on all pairs |
-# | Alg. 1 | pseudo-code | can't be run: eight repairs |
+# | Alg. 1 | pseudo-code of the search | our text of it lacks a step that takes a node out, parents, a test for walls, and a use of $F_\text{fin}$; repaired it is A\* with a price |
+# | section 2.3.1 | the distance $D_\text{min}$ is required | its cost makes it a price; it is kept where the detour is cheaper than the zone |
+# | Eqs 14–16 | a sum of forces decides | as work: the same for all routes; as a size, in our units: cancels in a wind towards the wall; as reasons that add up: keeps $D_\text{min}$ on all 40 grazing pairs |
+# | Table 2 | 1.022 times as long as A\* | 1.015 [1.013, 1.018] with 3.5 m, 1.025 [1.021, 1.029] with 4.5 m; the table's distance isn't given |
+# | Table 4 | resilience level of light load, mild wind: *intermediate*; 3.5, 4.5, 5.5 m | Table 3 gives this case the level *lower* (exercise 07.3); our Eq. 3 was fitted to the three distances, so they test nothing |
+# | Figs 11, 12, 14 | disturbed, A\* crashes; the field is trapped; REPARE gets out | on this pair 790 [727, 844] of 1 000 flights crash on A\*'s route and 5 [0.1, 28] on REPARE's; about 40 to 70 % of A\*'s crashes on grazing pairs come from its ties (first case) |
 #
-# Intervals are 95 % by bootstrap over pairs, seed 8; lengths are ratios of means (seed 7: A\* 0.950, REPARE/A\* 1.015).
-# Beyond the paper: the zone widened towards the wind keeps a mean offset of 2 m from making fifteen times as
-# many touches, and a price by Rice's formula makes the edge of the zone, and the choice of its width, unnecessary.
+# ## Read on
+#
+# - Z. Xu et al., "An anti-disturbance resilience enhanced algorithm for UAV 3D route planning", *Sensors* 22 (2022)
+#   2151, [doi:10.3390/s22062151](https://doi.org/10.3390/s22062151): read its Algorithm 1 beside our table.
+# - O. Khatib, "Real-time obstacle avoidance for manipulators and mobile robots", *International Journal of Robotics
+#   Research* 5 (1986) 90–98, [doi:10.1177/027836498600500106](https://doi.org/10.1177/027836498600500106): where the
+#   push of Eq. 4 comes from.
+# - S. O. Rice, "Mathematical analysis of random noise", *Bell System Technical Journal* 23 (1944) 282–332,
+#   [doi:10.1002/j.1538-7305.1944.tb00874.x](https://doi.org/10.1002/j.1538-7305.1944.tb00874.x): the crossing rate of
+#   Eq. 9.
 #
 # ## Your turn
 #
-# Three exercises: the weight ω, Table 3 as a score, and a boundary that doesn't flutter:
-# [exercises/07_repare_exercises.ipynb](exercises/07_repare_exercises.ipynb). Walls are not all that a fall can hit: [08
-# risk maps](08_risk_maps.ipynb) ask who is below.
+# Six exercises, from what a price promises to a price of your own that beats REPARE:
+# [exercises/07_repare_exercises.ipynb](exercises/07_repare_exercises.ipynb).
+#
+# Before: [06 The potential field](06_potential_field.ipynb). Next: [08 Risk maps](08_risk_maps.ipynb), which ask who is
+# below.
