@@ -4,12 +4,14 @@ import re
 from collections import Counter
 from pathlib import Path
 
+import jupytext
 import pytest
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "notebooks" / "SYMBOLS.md").read_text(encoding="utf-8")
 CHAPTERS = {path.name[:2] for path in (ROOT / "notebooks" / "src").glob("[0-9][0-9]_*.py")}
 COLUMNS = ["symbol", "meaning", "unit", "in code", "in the papers", "chapter"]
+SOURCES = sorted((ROOT / "notebooks" / "src").rglob("[0-9][0-9]_*.py"))
 CLASHES = "One letter, several meanings"
 TABLE_A1 = r"""
     F_r  P_r  S_r  H_r  \rho_r  V_r  \eta_r  t  F_{zMax}  \delta_r  G_{uav}  G_s  \vec{V}_{\mu F}  V_{MaxF}  t_w
@@ -53,11 +55,41 @@ def test_each_row_has_a_unit_and_chapters_that_exist(row):
     assert len(row) == len(COLUMNS)
     assert all(row), "an empty cell: a dash says that there is none"
     assert row[0].count("$") == 2
-    assert set(row[5].split(", ")) <= CHAPTERS
+    assert set(chapters_of(row)) <= CHAPTERS
+    assert chapters_of(row) or row[4] != "–", "in no chapter and in no paper"
+
+
+def chapters_of(row):
+    return [] if row[5] == "–" else row[5].split(", ")
+
+
+def plain(tex):
+    """TeX without what only changes how letters look."""
+    tex = re.sub(r"\\([lr]vert|mathbf|text|mathrm|boldsymbol|operatorname|bar|hat|dot)\b", "", tex)
+    return re.sub(r"[{}|]|\\[,;!]", " ", tex)
+
+
+MATHS = dict.fromkeys(CHAPTERS, "")
+for source in SOURCES:
+    for cell in jupytext.read(source).cells:
+        if cell.cell_type == "markdown":
+            found = re.findall(r"\$\$(.+?)\$\$|\$([^$]+)\$", cell.source, re.DOTALL)
+            MATHS[source.name[:2]] += " ".join(plain(one) for pair in found for one in pair) + " "
+
+
+@pytest.mark.parametrize("row", [row for row in ROWS if chapters_of(row)], ids=lambda row: f"{row[0]}-{row[5]}")
+def test_chapters_use_their_symbols(row):
+    """In equations of the text, or of its exercises."""
+    symbols = [plain(part) for part in re.split(r",\s*(?![^(]*\))", row[0].strip("$"))]
+    for chapter in chapters_of(row):
+        for symbol in symbols:
+            letters = r"\s*".join(map(re.escape, symbol.replace(" ", "")))
+            alone = letters if symbol.startswith("\\") else rf"(?<![A-Za-z\\]){letters}"
+            assert re.search(rf"{alone}(?![A-Za-z])", MATHS[chapter]), (symbol, chapter)
 
 
 def test_each_chapter_has_symbols():
-    assert {chapter for row in ROWS for chapter in row[5].split(", ")} == CHAPTERS
+    assert {chapter for row in ROWS for chapter in chapters_of(row)} == CHAPTERS
 
 
 def test_symbols_with_two_rows_are_listed_as_clashes():
@@ -66,7 +98,7 @@ def test_symbols_with_two_rows_are_listed_as_clashes():
 
 
 def test_no_chapter_uses_a_symbol_for_two_things_unless_that_is_said():
-    used = Counter((row[0], chapter) for row in ROWS for chapter in row[5].split(", "))
+    used = Counter((row[0], chapter) for row in ROWS for chapter in chapters_of(row))
     for (symbol, chapter), count in used.items():
         meanings = next((row[1] for row in parts()[CLASHES][1:] if row[0] == symbol), "")
         assert count == 1 or chapter in meanings, (symbol, chapter)
