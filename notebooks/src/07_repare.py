@@ -112,13 +112,13 @@ for name, case in cases.items():
 # %% [markdown]
 # The chain above goes from a force by $\sigma$ to $D_\text{min}$. Here **we read Eq. 1 backwards**, from the printed
 # $D_\text{min}$ to $\sigma$, as chapter 02 does. To start from the force one needs numbers for the classes. Ours are
-# payloads up to 0.25 kg (*light*) and 1 kg (*heavy*) and mean winds up to 6 m/s (*mild*) and 9 m/s (*heavy*). With them
-# chapter [03](03_predicting_the_disturbance.ipynb) has the offset
+# payloads up to 0.25 kg (*light*) and 1 kg (*heavy*) and mean winds up to 6 m/s (*mild*) and 9 m/s (*heavy*). With gusts
+# of 1.75 times the mean (chapter 01) and 1 m in calm air, chapter [03](03_predicting_the_disturbance.ipynb)'s formula is
 #
 # $$ \xi = 1\,\text{m} + 8.5\,\text{m}\cdot |\mathbf F_\text{dist}|, \quad\text{rounded up to whole metres,} \tag{3} $$
 #
 # where $|\mathbf F_\text{dist}|$ is the force of the gusts relative to the thrust that is left (Eq. 5 below). Eq. 3
-# gives Table 4's three values. But payloads, winds, 1 m and 8.5 m were *chosen* so that it does.  That is a circle:
+# gives Table 4's three values. But payloads, winds, 1 m and 8.5 m were *chosen* so that it does. That is a circle:
 # neither direction is evidence for the other. We can test only what comes after $\sigma$: whether $3\sigma$ is enough,
 # and what to do with $D_\text{min}$.
 
