@@ -265,7 +265,6 @@ def gets_on(flight, goal, setting):
 
 
 # %% [markdown]
-#
 # ## Would other settings help?
 #
 # We try 100 fields from the same start: conic or quadratic pull, voxels or surface, five values of $k_\text{rep}$ and

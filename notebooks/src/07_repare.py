@@ -504,8 +504,8 @@ for load, ratio in ratios.items():
     )
 
 # %% [markdown]
-# One to three percent longer, as in the paper.   With 3.5 m half of
-# the routes aren't longer at all. And is the distance kept? On the grazing pairs:
+# One to three percent longer, as in the paper. With 3.5 m half of the routes aren't longer at all. And is the distance
+# kept? On the grazing pairs:
 
 # %% tags=["nbval-check-output"]
 plain = [astar(city, *pair) for pair in grazing]
@@ -690,7 +690,6 @@ assert abs(higher[higher < 3.4].max() - 3.05) < 0.06
 assert round((smooth / zone).max()) == 7
 
 # %% [markdown]
-#
 # ### The comparison
 #
 # Hazard A\*'s routes are straightened, and its price reaches beyond $D_\text{min}$. We give both to REPARE, too, one
