@@ -65,6 +65,16 @@ def test_flights_of_a_day_are_left_out_together(as_text):
     assert exceeded[1] < 0.09
 
 
+def test_labels_of_dropped_rows_are_dropped():
+    features, offsets, day = days_of_one_kind(np.random.default_rng(3), count=20, flights=5)
+    holes = features.copy()
+    holes.iloc[[0, 1, 2, 40]] = np.nan
+    whole = holes["wind_speed"].notna().to_numpy()
+    dropped = OffsetPredictor(("wind_speed",)).fit(holes, offsets, groups=day, drop_nan=True)
+    clean = OffsetPredictor(("wind_speed",)).fit(features[whole], offsets[whole], groups=day[whole])
+    assert dropped.fitted.margin == clean.fitted.margin
+
+
 @pytest.mark.parametrize(
     ("groups", "words"),
     [
