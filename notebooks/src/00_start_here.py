@@ -509,7 +509,7 @@ plot.risk(campus, 25.0, {"shortest route": across, "less risk": around}, colors=
 #
 # ## Your turn
 #
-# From chapter 01 on, each has some exercises in the folder `exercises`; `exercises.check` says whether your answer is
-# right, or what to think about.
+# From chapter 01 on, each has some exercises in the folder `exercises`. `exercises.check` says whether your answer is
+# right, or what to think about, and `exercises.progress` lists what is done.
 #
 # Next: [01 Wind and rain](01_wind_and_rain.ipynb).

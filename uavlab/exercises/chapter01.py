@@ -147,20 +147,16 @@ def scatter(time: float) -> float:
 
 TIMES = {
     (3.4, 4.6): "Is that in minutes? The time is asked for in seconds.",
-    (
-        5.0,
-        9.0,
-    ): "So few samples would do if each second brought a new gust. Neighbouring seconds are nearly alike: look "
-    "at the scatter of the means themselves.",
+    (5.0, 9.0):
+        "So few samples would do if each second brought a new gust. Neighbouring seconds are nearly alike: look at the "
+        "scatter of the means themselves.",
     (18.0, 20.0): "That is the memory τ of the gusts. Over one memory the mean still follows the gust.",
     (70.0, 90.0): "There the variance of the means is 0.4. Asked for is their standard deviation, its root.",
-    (
-        115.0,
-        140.0,
-    ): "One new gust every τ seconds would give that. A moment is like those before it and like those after "
-    "it: correlation counts on both sides.",
+    (115.0, 140.0):
+        "One new gust every τ seconds would give that. A moment is like those before it and like those after it: "
+        "correlation counts on both sides.",
     (850.0, 1150.0): "There two standard deviations are 0.4 m/s. Asked for is the time at which one is.",
-}
+}  # fmt: skip
 """From and to which time [s] a known mistake leads, and what to tell of it."""
 
 DISTANCE, HEAD_WIND, GUST, PAUSE = 2000.0, 7.0, 1.75, 120.0

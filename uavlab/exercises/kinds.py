@@ -149,7 +149,7 @@ def shape_of(value: Any) -> tuple[int, ...] | None:
 
 
 def described(value: Any) -> str:
-    """A value in words, as in "…" or "you hand over …"."""
+    """A value in words, for "your function returns …" or "you hand over …"."""
     if value is None:
         return "nothing: it needs a line with `return`"
     if isinstance(value, str | bytes):
