@@ -495,13 +495,17 @@ CALLS = {
     "planners.least_energy": lambda: planned(
         uav=DRONE, disturbance=BREEZE, speed=5.0, min_clearance=0.5, **heights()
     ),
-    "planners.least_risk": lambda: risked(heuristic="backward", **weighed()),
+    "planners.least_risk": lambda: risked(
+        heuristic="backward", max_igrc=10, ground_risk_buffer=0.5, **weighed()
+    ),
     "planners.optimality_gap": lambda: {"route": LINE, "exact": EXACT},
     "planners.pareto_front": lambda: risked(
-        lengths=3, max_turn=3.0, max_pitch=1.0, min_clearance=0.25, drift=False, **heights()
+        lengths=3, max_turn=3.0, max_pitch=1.0, min_clearance=0.25, drift=False, max_igrc=10, ground_risk_buffer=0.5,
+        **heights()
     ),
     "planners.pareto_front: of lengths": lambda: risked(
-        lengths=(20.0, 32.0), max_turn=3.0, max_pitch=1.0, min_clearance=0.25, drift=False, **heights()
+        lengths=(20.0, 32.0), max_turn=3.0, max_pitch=1.0, min_clearance=0.25, drift=False, max_igrc=10,
+        ground_risk_buffer=0.5, **heights()
     ),
     "planners.penalty_zone": lambda: {"city": TOWN, "safe_distance": 1.5, "penalty": 2.0, "zone": "ball"},
     "planners.potential_field": lambda: planned(
@@ -654,11 +658,20 @@ CALLS = {
         "safe_height": 0.5, "min_height": 0.5, "as_printed": False,
     },
     "risk.RiskMap.integral": lambda: {"self": RISK, "route": LINE, "drift": False},
+    "risk.RiskMap.igrc_within": lambda: {"self": RISK, "ground_risk_buffer": 2.0},
+    "risk.RiskMap.highest_igrc": lambda: {"self": RISK, "route": LINE, "ground_risk_buffer": 2.0},
     "risk.RiskMap.cell_sum": lambda: {"self": RISK, "route": LINE},
     "risk.RiskMap.fatalities": lambda: {"self": RISK, "route": LINE, "speed": 5.0},
     "risk.ballistic_fall": lambda: {"height": 30.0, "uav": DRONE, "speed": 5.0, "pitch": 0.25, "air_density": 1.25},
     "risk.building_threat": lambda: {"city": TOWN, "constant": 128.0},
     "risk.fall_speed": lambda: {"height": 30.0, "uav": DRONE, "air_density": 1.25, "as_printed": False},
+    "risk.ground_risk_buffer": lambda: {"height": 30.0, "dimension": 0.5, "speed": 16.0},
+    "risk.igrc": lambda: {
+        "population_density": 0.03125, "dimension": 0.5, "speed": 16.0, "mass": 1.5, "controlled": False,
+    },
+    "risk.nominal_critical_area": lambda: {"dimension": 0.5, "speed": 16.0},
+    "risk.raw_igrc": lambda: {"population_density": 0.03125, "critical_area": 8.0, "tlos": 1e-6},
+    "risk.tolerable_failure_rate": lambda: {"population_density": 0.03125, "critical_area": 8.0, "tlos": 1e-6},
     "risk.impact_energy": lambda: {"mass": 1.5, "forward_speed": 5.0, "fall_speed": 20.0},
     "risk.impact_fatality": lambda: {
         "energy": 256.0, "shelter": 0.25, "even_odds_energy": 1048576.0, "least_fatal_energy": 34.0,

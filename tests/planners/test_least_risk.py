@@ -95,6 +95,72 @@ def test_cost_is_that_of_scipy_s_dijkstra_over_states(seed):
             assert (route.reason == "") is route.reached
 
 
+def classes_by_hand(risk_map, buffer):
+    """Highest iGRC within a buffer of each cell's centre, for a UAV below 1 m and 25 m/s, from the definition."""
+    classes = 2 + (risk_map.population_density[..., None] * 1e6 >= [5, 50, 500, 5_000, 50_000]).sum(axis=-1)
+    index = np.stack(np.indices(classes.shape), axis=-1).reshape(-1, 2)
+    gaps = np.maximum(np.abs(index[:, None] - index) - 0.5, 0) * risk_map.city.cell
+    near = np.hypot(*np.moveaxis(gaps, -1, 0)) <= buffer
+    return np.where(near, classes.ravel(), 0).max(axis=1).reshape(classes.shape)
+
+
+@pytest.mark.parametrize("buffer", [0.0, 4.0])
+@pytest.mark.parametrize("number", range(40))
+def test_optimum_of_a_highest_class_is_that_of_scipy_s_dijkstra_over_states(number, buffer):
+    """Where start or goal lie over ground of a higher class, the nearest voxels that don't take their place."""
+    risk_map = campus(number)
+    open_ground = classes_by_hand(risk_map, buffer) <= 6
+    free = risk_map.flyable & open_ground[..., None]
+    centers = risk_map.city.center_of(np.argwhere(free))
+    ends = [centers[np.linalg.norm(centers - end, axis=1).argmin()] for end in CAMPUS_FLIGHT]
+    moves = ways(free, question.MAX_TURN, MAX_PITCH)
+    for weights in WEIGHTS[:2]:
+        expected = cheapest_by_scipy(moves, prices(risk_map, **weights), *(code(risk_map, end) for end in ends))
+        route = least_risk(risk_map, *ends, **weights, max_igrc=6, ground_risk_buffer=buffer)
+        assert route.reached is bool(np.isfinite(expected))
+        assert route.cost == pytest.approx(expected, rel=1e-9)
+        if route.reached:
+            assert risk_map.highest_igrc(route, ground_risk_buffer=buffer) <= 6
+
+
+def test_campuses_above_are_of_all_kinds():
+    bound = parted = 0
+    for number in range(40):
+        risk_map = campus(number)
+        bound += risk_map.highest_igrc(least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0)) > 6
+        parted += not (risk_map.igrc_within(4.0) <= 6).all()
+    assert bound >= 20
+    assert parted == 40
+
+
+def test_front_keeps_to_a_highest_class():
+    front = pareto_front(campus(0), *CAMPUS_FLIGHT, lengths=5, max_igrc=6)
+    free = pareto_front(campus(0), *CAMPUS_FLIGHT, lengths=5)
+    assert [campus(0).highest_igrc(route) for route in front] == [6] * len(front)
+    assert campus(0).highest_igrc(free[0]) == 7
+    assert front[0].length > free[0].length
+
+
+def test_a_class_that_no_route_keeps_is_named_with_what_would_open_one():
+    """A river of people across the map."""
+    people = np.full((7, 7), 10e-6)
+    people[3] = [1e-3] * 3 + [1e-2] * 4
+    risk_map = RiskMap(City(np.zeros((7, 7, 7), bool), 2.0), people, 0.5, safe_height=0.0)
+    ends = (1, 7, 7), (13, 7, 7)
+    route = least_risk(risk_map, *ends, max_igrc=4)
+    assert route.reason.endswith("there would be one with max_igrc=5")
+    assert not pareto_front(risk_map, *ends, max_igrc=4)[0].reached
+    assert risk_map.highest_igrc(least_risk(risk_map, *ends, max_igrc=5)) == 5
+    tight = least_risk(risk_map, (1, 1, 7), (13, 1, 7), max_igrc=5, ground_risk_buffer=5.0)
+    assert tight.reason.endswith("there would be one with max_igrc=6, or with ground_risk_buffer=0 m"), tight.reason
+    with pytest.raises(
+        ValueError, match=r"start .* has ground of a class above max_igrc=3 within 3 m; the nearest free"
+    ):
+        least_risk(risk_map, (5, 7, 7), (13, 7, 7), max_igrc=3, ground_risk_buffer=3.0)
+    with pytest.raises(ValueError, match=r"goal .* has ground of a class above max_igrc=3 below it; the nearest free"):
+        least_risk(risk_map, (1, 7, 7), (7, 7, 7), max_igrc=3)
+
+
 def test_maps_above_ask_for_all_kinds_of_routes():
     reached, bent, steep, clear, long = 0, 0, 0, 0, 0
     for seed in range(100):

@@ -68,6 +68,8 @@ def looser_values(risk_map: RiskMap, limits: Limits) -> dict[str, list[float]]:
         "safe_height": below(limits.safe_height, city.height_above_surface),
         "min_height": below(limits.min_height, least_heights(city)),
         "max_height": [np.inf] if limits.max_height < np.inf else [],
+        "max_igrc": np.unique(risk_map.igrc[risk_map.igrc > limits.max_igrc]).tolist(),
+        "ground_risk_buffer": [0.0] if limits.ground_risk_buffer > 0 and limits.max_igrc < np.inf else [],
     }
 
 
@@ -79,7 +81,9 @@ def least_heights(city: City) -> np.ndarray:
 
 def setting(name: str, value: float) -> str:
     """A limit with its value in the unit that people think in."""
-    return f"{name}={np.degrees(value):g}°" if name in ("max_turn", "max_pitch") else f"{name}={value:g} m"
+    if name in ("max_turn", "max_pitch"):
+        return f"{name}={np.degrees(value):g}°"
+    return f"{name}={value:g}" + " m" * (name != "max_igrc")
 
 
 def up(length: float) -> float:

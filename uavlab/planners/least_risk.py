@@ -48,6 +48,8 @@ def least_risk(
     min_clearance: float = 0.0,
     min_height: float | None = None,
     max_height: float = np.inf,
+    max_igrc: int | None = None,
+    ground_risk_buffer: float = 0.0,
     drift: bool = False,
     heuristic: str = "backward",
 ) -> Route:
@@ -79,6 +81,12 @@ def least_risk(
     min_height, max_height : float
         Least and greatest height above ground [m], by default the map's `min_height` and none. A start or goal below
         it is left and reached vertically, whatever the other limits.
+    max_igrc : int, optional
+        Highest intrinsic ground risk class of the ground below the route (SORA 2.5), 1 to 10, see `RiskMap.igrc`.
+        Take-off and landing below `min_height` keep it, too. What is done to the route later, such as smoothing,
+        doesn't know of it: `RiskMap.highest_igrc` measures it.
+    ground_risk_buffer : float
+        Distance [m], at least 0, within which the ground beside the route must be of these classes, too.
     drift : bool
         Take the risk where the wreck lands, ahead of the UAV, see `RiskMap.rate_ahead`.
     heuristic : {"backward", "zero"}
@@ -95,9 +103,10 @@ def least_risk(
     ValueError
         If `risk_map` is no RiskMap. If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle
         or a no-fly zone, nearer to an obstacle than `min_clearance`, lower above roofs than the map's `safe_height`, or
-        above `max_height`. If both lie in one voxel. If `risk_weight`, `length_weight` or `threat_weight` is negative
-        or not finite, or all are 0. If `max_turn` is not from 0 to π, or `max_pitch` not from 0 to π/2. If
-        `min_clearance` or `min_height` is negative or not finite. If `max_height` is not above `min_height`. If
+        above `max_height`, or over ground that `max_igrc` closes. If both lie in one voxel. If `risk_weight`,
+        `length_weight` or `threat_weight` is negative or not finite, or all are 0. If `max_turn` is not from 0 to π, or
+        `max_pitch` not from 0 to π/2. If `min_clearance`, `min_height` or `ground_risk_buffer` is negative or not
+        finite. If `max_height` is not above `min_height`. If `max_igrc` is no whole number from 1 to 10. If
         `max_length` is not above 0. If `drift` is neither True nor False. If `heuristic` is unknown.
 
     See Also
@@ -121,7 +130,9 @@ def least_risk(
     began = time.perf_counter()
     checks.one_of("heuristic", heuristic, ("backward", "zero"))
     allowed = checked_length(max_length)
-    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
+    limits = checked_limits(
+        risk_map, max_turn, max_pitch, min_clearance, min_height, max_height, max_igrc, ground_risk_buffer
+    )
     weights = Weights.checked(risk_weight, length_weight, threat_weight, drift)
     price = price_per_cell(risk_map, weights)
     ends = flyable_endpoints(risk_map, start, goal, limits)
@@ -156,6 +167,8 @@ def pareto_front(
     min_clearance: float = 0.0,
     min_height: float | None = None,
     max_height: float = np.inf,
+    max_igrc: int | None = None,
+    ground_risk_buffer: float = 0.0,
     drift: bool = False,
 ) -> list[Route]:
     """The least risk for each length that one is ready to fly, exactly (ε-constraint method).
@@ -164,7 +177,9 @@ def pareto_front(
 
     Parameters
     ----------
-    risk_map, start, goal, max_turn, max_pitch, min_clearance, min_height, max_height, drift
+    risk_map, start, goal, max_turn, max_pitch, min_clearance, min_height, max_height
+        As for `least_risk`.
+    max_igrc, ground_risk_buffer, drift
         As for `least_risk`.
     lengths : int or array
         Greatest lengths to ask for [m]; or how many, from 2 to 10,000, spread evenly from the shortest route's to that
@@ -180,9 +195,9 @@ def pareto_front(
     Raises
     ------
     ValueError
-        If `risk_map`, `start`, `goal`, `max_turn`, `max_pitch`, `min_clearance`, `min_height` or `max_height` is what
-        `least_risk` refuses, or `drift` neither True nor False. If `lengths` is empty, has more than one axis, is as a
-        count below 2 or above 10,000, or a length is not finite and above 0.
+        If `risk_map`, `start`, `goal`, `max_turn`, `max_pitch`, `min_clearance`, `min_height`, `max_height`, `max_igrc`
+        or `ground_risk_buffer` is what `least_risk` refuses, or `drift` neither True nor False. If `lengths` is empty,
+        has more than one axis, is as a count below 2 or above 10,000, or a length is not finite and above 0.
 
     See Also
     --------
@@ -204,7 +219,9 @@ def pareto_front(
     [(141, 41.9), (156, 6.6), (172, 5.6), (189, 5.5)]
     """
     began = time.perf_counter()
-    limits = checked_limits(risk_map, max_turn, max_pitch, min_clearance, min_height, max_height)
+    limits = checked_limits(
+        risk_map, max_turn, max_pitch, min_clearance, min_height, max_height, max_igrc, ground_risk_buffer
+    )
     count = None
     if isinstance(lengths, int | np.integer):
         count = checks.whole("lengths", int(lengths), 2, MOST_LENGTHS)
@@ -224,6 +241,7 @@ def pareto_front(
             least_risk(
                 risk_map, start, goal, max_turn=max_turn, max_pitch=max_pitch,
                 min_clearance=min_clearance, min_height=min_height, max_height=max_height,
+                max_igrc=max_igrc, ground_risk_buffer=ground_risk_buffer,
             )
         ]  # fmt: skip
     if count is None:

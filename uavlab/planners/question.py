@@ -32,13 +32,19 @@ class Airspace(NamedTuple):
     """Least height above what lies below [m], of a risk map."""
     radius: float = 0.0
     """Of a body that must not touch anything [m], where greater distances are only dear."""
+    closed: np.ndarray | None = None
+    """Ground over which it may not be, (nx, ny) bool."""
+    why_closed: str = ""
+    """In words, for a start or a goal over it."""
 
     @property
     def blocked(self) -> np.ndarray:
         """Where it may not be, (nx, ny, nz) bool."""
         clearance = self.promises["min_clearance"]
         blocked = self.city.blocked(clearance, min_height=self.min_height, max_height=self.max_height)
-        return locked(blocked | ~high_enough(self.city, self.safe_height)) if self.safe_height > 0 else blocked
+        if self.safe_height > 0:
+            blocked = locked(blocked | ~high_enough(self.city, self.safe_height))
+        return blocked if self.closed is None else locked(blocked | self.closed[..., None])
 
     @property
     def promises(self) -> dict[str, Any]:
@@ -144,6 +150,8 @@ def what_blocks(airspace: Airspace, blocked: np.ndarray, position: np.ndarray) -
         return f"lies in {city.building_at(position)}"
     if city.no_fly and city.in_no_fly[index]:
         return f"lies in no-fly zone {city.zone_at(position)!r}"
+    if airspace.closed is not None and airspace.closed[index[:2]]:
+        return airspace.why_closed
     height = city.height_above_ground(position)
     if city.out_of_heights(0.0, airspace.max_height)[index]:
         return f"is {height:.1f} m above ground, max_height allows {airspace.max_height:g} m"

@@ -90,6 +90,8 @@ class Limits(NamedTuple):
     safe_height: float
     min_height: float
     max_height: float
+    max_igrc: float = np.inf
+    ground_risk_buffer: float = 0.0
 
 
 class Query(NamedTuple):
@@ -114,7 +116,13 @@ def query_of(risk_map: RiskMap, price: np.ndarray, source: int, target: int, lim
 
 def airspace_of(risk_map: RiskMap, limits: Limits) -> Airspace:
     """Where the limits allow to be."""
-    return Airspace(risk_map.city, limits.min_clearance, limits.min_height, limits.max_height, limits.safe_height)
+    airspace = Airspace(risk_map.city, limits.min_clearance, limits.min_height, limits.max_height, limits.safe_height)
+    if limits.max_igrc == np.inf:
+        return airspace
+    closed = risk_map.igrc_within(limits.ground_risk_buffer) > limits.max_igrc
+    where = f"within {limits.ground_risk_buffer:g} m" if limits.ground_risk_buffer else "below it"
+    why = f"has ground of a class above max_igrc={limits.max_igrc:g} {where}"
+    return airspace._replace(closed=closed, why_closed=why)
 
 
 def city_lengths(query: Query) -> Query:
@@ -147,6 +155,8 @@ def checked_limits(
     min_clearance: float,
     min_height: float | None,
     max_height: float,
+    max_igrc: int | None = None,
+    ground_risk_buffer: float = 0.0,
 ) -> Limits:
     """A planner's arguments as limits; `min_height` is the map's by default."""
     checks.instance("risk_map", risk_map, RiskMap)
@@ -155,7 +165,9 @@ def checked_limits(
     max_turn = checks.number("max_turn", max_turn, checks.within, 0.0, np.pi + 1e-9, radians)
     max_pitch = checks.number("max_pitch", max_pitch, checks.within, 0.0, np.pi / 2 + 1e-9, radians)
     heights = checked_heights(risk_map.min_height if min_height is None else min_height, max_height)
-    return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, *heights)
+    highest = np.inf if max_igrc is None else float(checks.whole("max_igrc", max_igrc, 1, 10))
+    buffer = checks.not_negative_number("ground_risk_buffer", ground_risk_buffer)
+    return Limits(max_turn, max_pitch, min_clearance, risk_map.safe_height, *heights, highest, buffer)
 
 
 def checked_length(max_length: float | None) -> float:

@@ -14,6 +14,7 @@ from uavlab.city import City
 from uavlab.city.extent import locked
 from uavlab.risk.drift import Falls, falls_of, landing_rate
 from uavlab.risk.rates import check_density, person_rate, vehicle_rate
+from uavlab.risk.sora import highest_within, igrc
 from uavlab.risk.threat import building_threat
 from uavlab.route import Route, Way, as_route
 from uavlab.vehicle import RISK_QUADROTOR, UAV
@@ -109,6 +110,90 @@ class RiskMap:
     def rate(self) -> np.ndarray:
         """r = P1 + P2, (nx, ny, nz) [1/h]."""
         return self.person_rate + self.vehicle_rate[..., None]
+
+    @cached_property
+    def igrc(self) -> np.ndarray:
+        """Intrinsic ground risk class of each cell of the ground for this UAV, (nx, ny) int, see `uavlab.risk.igrc`.
+
+        From `population_density` alone: SORA counts people, whatever shelters them, and cars by the people in them.
+        """
+        uav = self.uav
+        mass, speed = uav.mass + uav.payload, max(uav.top_speed, uav.cruise_speed)
+        return locked(np.asarray(igrc(self.population_density, uav.diameter, speed, mass=mass)))
+
+    def igrc_within(self, ground_risk_buffer: float) -> np.ndarray:
+        """The highest class below and within a ground risk buffer, for a flight above each cell.
+
+        Parameters
+        ----------
+        ground_risk_buffer : float
+            Distance [m], at least 0, from the centre of a cell to the nearest point of the others; 0 is the cell alone.
+            See `uavlab.risk.ground_risk_buffer`.
+
+        Returns
+        -------
+        (nx, ny) array of int
+            Beyond the edge of the map nothing is known and nothing counted.
+
+        Raises
+        ------
+        ValueError
+            If `ground_risk_buffer` is negative or not finite.
+
+        Examples
+        --------
+        A crowd in a meadow, which a flight has to pass at a distance.
+
+        >>> import numpy as np
+        >>> from uavlab.city import City
+        >>> from uavlab.risk import RiskMap
+        >>> people = np.full((7, 7), 10e-6)
+        >>> people[3, 3] = 0.1
+        >>> risk = RiskMap(City(np.zeros((7, 7, 8), dtype=bool), cell=5.0), people, shelter=0.0)
+        >>> [int((risk.igrc_within(buffer) > 6).sum()) for buffer in (0.0, 5.0, 10.0)]
+        [1, 9, 21]
+        """
+        return highest_within(
+            self.igrc, checks.not_negative_number("ground_risk_buffer", ground_risk_buffer), self.city.cell
+        )
+
+    def highest_igrc(self, route: Route | Way, *, ground_risk_buffer: float = 0.0) -> int:
+        """The class of a flight: the highest below the voxels that a route passes, and within a buffer.
+
+        Parameters
+        ----------
+        route : Route or Curve
+            On the map; not arriving is no hindrance, if it has points.
+        ground_risk_buffer : float
+            As for `igrc_within` [m].
+
+        Returns
+        -------
+        int
+            1 to 10, or `uavlab.risk.sora.NO_CLASS`.
+
+        Raises
+        ------
+        ValueError
+            If `ground_risk_buffer` is negative or not finite, or `route` leaves the map, was not found, or is neither
+            route nor curve.
+
+        See Also
+        --------
+        uavlab.planners.least_risk : With `max_igrc` keeps to lower classes.
+
+        Examples
+        --------
+        >>> from uavlab.planners import least_risk
+        >>> from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+        >>> campus = reference_campus()
+        >>> route = least_risk(campus, *CAMPUS_FLIGHT)
+        >>> campus.highest_igrc(route)
+        6
+        """
+        index, length = found(route).voxels(self.city)
+        passed = index[length > 1e-9 * self.city.cell]
+        return int(self.igrc_within(ground_risk_buffer)[passed[:, 0], passed[:, 1]].max())
 
     @cached_property
     def threat(self) -> np.ndarray:
