@@ -570,3 +570,39 @@ def test_solutions_answer_examples(solutions):
     way = solutions["own_mission"](city, *CAMPUS_FLIGHT).path(city)
     assert way.en_route.clearance(city) > 3.0
     assert risk.fatalities(way.en_route) < 0.2 * risk.fatalities(good().path(city).en_route)
+
+
+MISTAKES = {
+    "14.1": {
+        "as long everywhere": lambda latitude: digit(latitude, mistake="no cosine"),
+        "takes an angle in radians": lambda latitude: digit(latitude, mistake="degrees"),
+        "a whole degree": lambda latitude: digit(latitude, mistake="degree"),
+    },
+    "14.2": {
+        "the same in all three frames": lambda frame, z, *_: z,
+        "you add home's height": lambda frame, z, h, s, g: z + h if frame == "home" else from_zero(frame, z, h, s, g),
+        "points above home have altitudes below 0": lambda frame, z, h, s, g: (
+            h - z if frame == "home" else from_zero(frame, z, h, s, g)
+        ),
+    },
+    "14.3": {
+        "twice too much": lambda *question: corner(*question, mistake="twice"),
+        "that is a tangent": lambda *question: corner(*question, mistake="tangent"),
+        "may be a whole leg": lambda *question: corner(*question, mistake="whole"),
+    },
+    "14.4": {
+        "one way only": lambda *question: arrives(*question, mistake="one way"),
+        "a single try for each item": lambda *question: arrives(*question, mistake="single"),
+        "the chance of one item": lambda *question: arrives(*question, mistake="one item"),
+    },
+    "14.5": {
+        "one σ reach the margin": lambda *question: by_root(*question, mistake="one sigma"),
+        "forget the root": lambda *question: by_root(*question, mistake="no root"),
+        "in minutes": lambda *question: by_root(*question, mistake="minutes"),
+    },
+    "14.6": {
+        "lands where it took off": lambda *_: good(end="return"),
+        "hovers until the battery is empty": lambda *_: good(end="stay"),
+        "has no fence to stay inside of": lambda *_: replace(good(), fence=()),
+    },
+}

@@ -38,7 +38,9 @@ from uavlab.risk import CAMPUS_FLIGHT, reference_campus
 # %% [markdown]
 # ## 14.1 How far is one step?
 #
-# *Warm-up, 5 minutes.* A MAVLink message has latitude and longitude as whole numbers. One step of such a number is
+# *Warm-up · 5 minutes*
+#
+# A MAVLink message has latitude and longitude as whole numbers. One step of such a number is
 # $10^{-7}$ degrees. How many metres is one step to the north, and how many is one step to the east, at the latitude
 # `latitude_deg` (in degrees)? Take the Earth as a sphere with a radius of 6 371 000 m. Return both, `(north, east)`.
 #
@@ -77,7 +79,9 @@ print(f"a 32-bit float next to 47.25: {np.spacing(np.float32(47.25)) / 1e-7 * di
 # %% [markdown]
 # ## 14.2 One point, three altitudes
 #
-# *Warm-up, 5 minutes.* An altitude says nothing until we say what it is measured from. MAVLink calls that the *frame*:
+# *Warm-up · 5 minutes*
+#
+# An altitude says nothing until we say what it is measured from. MAVLink calls that the *frame*:
 # "home" measures from where the UAV takes off, "sea" from the level of the sea, "terrain" from the ground below the
 # point. A map has a zero of its own, which may be any height. On this map the point is at height `z`, home at `home_z`,
 # and the ground below the point at `ground_z`. Home lies `home_above_sea` above the sea. All four are in metres. Return
@@ -115,7 +119,9 @@ for frame in ("home", "sea", "terrain"):
 # %% [markdown]
 # ## 14.3 Around the corner
 #
-# *To code, 20 minutes.* An autopilot doesn't fly to a waypoint and turn there. It leaves the first leg before the
+# *Code · 20 minutes*
+#
+# An autopilot doesn't fly to a waypoint and turn there. It leaves the first leg before the
 # waypoint and joins the second leg behind it. Both places are equally far from the waypoint. We call that distance the
 # *reach*. It is `radius`, but not more than half of either leg, because the other half belongs to the next corner.
 #
@@ -169,7 +175,9 @@ for turn in (0, 20, 45, 70, 90, 120, 160):
 # %% [markdown]
 # ## 14.4 Over a link that loses messages
 #
-# *To code, 15 minutes.* The vehicle asks for one item of a mission after the other. Each item needs a question from the
+# *Code · 15 minutes*
+#
+# The vehicle asks for one item of a mission after the other. Each item needs a question from the
 # vehicle and an answer from the ground station. Each message is lost with the probability `loss`, independently of all
 # others. If the answer doesn't come, the vehicle asks the same question again, up to `tries` times in all. If it gets
 # no answer to its last question either, it gives up the whole mission. What is the probability that all `items` arrive?
@@ -207,7 +215,9 @@ for tries in (1, 2, 3, 5, 8, 12):
 # %% [markdown]
 # ## 14.5 How long can you trust GPS?
 #
-# *Experiment, 25 minutes.* The position that GPS gives drifts. At take-off the autopilot knows where it stands, so the
+# *Experiment · 25 minutes*
+#
+# The position that GPS gives drifts. At take-off the autopilot knows where it stands, so the
 # error begins at 0. Then it wanders off: it is a *Gauss–Markov process*, which forgets where it was with a time
 # constant $\tau$. On each axis the error is normally distributed around 0, with a standard deviation that grows:
 #
@@ -295,7 +305,9 @@ plot.finished(figure)
 # %% [markdown]
 # ## 14.6 A mission of your own
 #
-# *Open, 30 minutes.* Make a mission on the reference campus. The cell below gives the campus a place on Earth, so
+# *Open · 30 minutes*
+#
+# Make a mission on the reference campus. The cell below gives the campus a place on Earth, so
 # `Mission.from_route` needs no `home`. Write a function that gets the city, the start and the goal, and returns a
 # `Mission`. Any planner of the course will do. The check measures the way of the mission on the map. The mission must
 #
