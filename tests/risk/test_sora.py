@@ -1,6 +1,7 @@
 """SORA 2.5: each cell of the table, the formula behind it against an independent package, buffers, maps of classes."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from uavlab.risk import (
 )
 from uavlab.risk.rates import FAILURE_RATE
 from uavlab.route import Route
+from uavlab.vehicle import LIGHT_QUADROTOR
 
 COLUMNS = [(1, 25), (3, 35), (8, 75), (20, 120), (40, 200)]
 ROWS = {
@@ -150,8 +152,16 @@ def test_class_of_a_flight_is_the_highest_below_it():
     assert [risk_map.highest_igrc(route) for route in (past, over)] == [3, 7]
     assert risk_map.highest_igrc(past, ground_risk_buffer=12.4) == 3
     assert risk_map.highest_igrc(past, ground_risk_buffer=12.5) == 7
-    edge = Route([(2.5, 15.0, 12.5), (27.5, 15.0, 12.5)])
-    assert risk_map.highest_igrc(edge) in (3, 7)
+    corner = Route([(7.5, 17.5, 12.5), (12.5, 22.5, 12.5)])  # through the corner that it shares with the crowd
+    assert risk_map.highest_igrc(corner) == 3
+
+
+def test_a_load_and_the_greatest_speed_count():
+    city = City(np.zeros((4, 4, 4), bool), 5.0)
+    light = replace(LIGHT_QUADROTOR, mass=0.2, payload=0.0, cruise_speed=10.0, top_speed=20.0, diameter=0.3)
+    kinds = {"light": light, "loaded": replace(light, payload=0.06), "fast": replace(light, top_speed=26.0)}
+    classes = {name: int(RiskMap(city, 0.03, 0.0, uav=uav).igrc.max()) for name, uav in kinds.items()}
+    assert classes == {"light": 1, "loaded": 6, "fast": 7}
 
 
 def test_large_and_fast_ones_have_a_class_in_crowds_only_up_to_3_m():
