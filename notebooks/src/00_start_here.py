@@ -455,7 +455,7 @@ plot.risk(campus, 25.0, {"shortest route": across, "less risk": around}, colors=
 # voxels crosses two of the four yellow places; the other goes around both. It is 6.6 % longer, and its risk is 83 %
 # lower: less than one fifth is left. (A straight line, which the grid doesn't have, would be 138.0 m long; the detour
 # is 8.8 % longer than that.) But this campus was drawn so that a claim of RISK-ACO can come true on it: 80 % less risk
-# for 7 % more length. Chapter [08](08_risk_maps.ipynb) asks whether other campuses confirm it.
+# for 7 % more length. Chapter [09](09_route_of_least_risk.ipynb) asks whether other campuses confirm it.
 #
 # ## All chapters
 #
@@ -471,15 +471,17 @@ plot.risk(campus, 25.0, {"shortest route": across, "less risk": around}, colors=
 # | [06 Potential field](06_potential_field.ipynb) | What if the goal just pulls, and the walls push? |
 # | [07 REPARE](07_repare.ipynb) | How should the weather change the route? |
 # | **III People below** | |
-# | [08 Risk maps](08_risk_maps.ipynb) | Whom does a falling UAV hit, and what does it cost to fly around them? |
+# | [08 Risk maps](08_risk_maps.ipynb) | Whom does a falling UAV hit, and how many die per hour of flight? |
+# | [09 The route of least risk](09_route_of_least_risk.ipynb) | How much risk does a detour save, and what do authorities ask for? |
 # | [10 Ant colony](10_ant_colony.ipynb) | Can simulated ants find the route of least risk? |
 # | [11 Particle swarm and beetles](11_particle_swarm_and_beetles.ipynb) | And simulated swarms? What decides, if not the algorithm? |
 # | **IV From route to flight** | |
 # | [12 B-splines and feasibility](12_bsplines_and_feasibility.ipynb) | Which curve can a UAV fly, and how fast? |
 # | [13 Flying in gusts](13_flying_in_gusts.ipynb) | Which planner's route survives the wind, and how sure is that? |
 # | [14 From route to autopilot](14_from_route_to_autopilot.ipynb) | How does a route get into an autopilot, and does it fly it? |
+# | [16 Your own city](16_your_own_city.ipynb) | All of it, in a district that you choose: a project with a page to hand in. |
 #
-# There is no chapter 09.
+# There is no chapter 15.
 #
 # ## Remember
 #

@@ -19,7 +19,7 @@
 # | | |
 # |---|---|
 # | **You will be able to** | turn a route into a mission with a fence; say what a height is above; run a checklist before a flight; upload a mission over a radio that loses packets; fly it against a simulated vehicle and compare track and plan |
-# | **You need** | chapters [08](08_risk_maps.ipynb) (risk), [05](05_astar.ipynb) (A\*, the notch of Table 1), [12](12_bsplines_and_feasibility.ipynb) (corners) and [13](13_flying_in_gusts.ipynb) (flights, GPS); nothing of radio |
+# | **You need** | chapters [09](09_route_of_least_risk.ipynb) (risk), [05](05_astar.ipynb) (A\*, the notch of Table 1), [12](12_bsplines_and_feasibility.ipynb) (corners) and [13](13_flying_in_gusts.ipynb) (flights, GPS); nothing of radio |
 # | **Time** | 45 minutes to read, a minute to run |
 # | **Paper** | RISK-ACO, section 4, Figs 13 to 15 |
 #
@@ -552,4 +552,4 @@ with simulated_vehicle(city, campus.uav, gusty, (12.5, 17.5)) as vehicle, connec
 # long a flight may be, and a mission of your own:
 # [exercises/14_from_route_to_autopilot_exercises.ipynb](exercises/14_from_route_to_autopilot_exercises.ipynb).
 #
-# Before: [13 flying in gusts](13_flying_in_gusts.ipynb).
+# Before: [13 flying in gusts](13_flying_in_gusts.ipynb). Next: [16 your own city](16_your_own_city.ipynb).
