@@ -4,7 +4,8 @@
 `notebooks/*.ipynb` up to date and runs it in a fresh kernel; figures and printed results stay in, 3D pages are taken
 out (they come back with Run All, a still picture stands for them). Exercises are their solutions with the answers
 taken out. `--check` changes nothing and fails if anything is stale. `--html` runs notebooks and writes them to
-`notebooks/html/` as pages that work offline, each in one file with its scenes, sliders and equations.
+`notebooks/html/` as pages that work offline, each in one file with its scenes, sliders and equations. `--nbgrader
+FOLDER` makes assignments of the exercises. The tables for teachers in `notebooks/README.md` are kept up to date, too.
 """
 
 import argparse
@@ -15,7 +16,9 @@ from pathlib import Path
 
 import jupytext
 import nbformat
+import teaching
 from exported import FOLDED, export
+from grading import write_assignments
 from nbclient import NotebookClient
 from nbformat import NotebookNode
 
@@ -34,7 +37,19 @@ def main() -> int:
     command.add_argument("--all", action="store_true", help="run all of them, stale or not")
     command.add_argument("--check", action="store_true", help="only say what is stale; exit 1 if anything is")
     command.add_argument("--html", action="store_true", help="write pages that work offline to notebooks/html/")
+    command.add_argument(
+        "--nbgrader",
+        metavar="FOLDER",
+        help="write exercises, as in 05 06, to FOLDER/source for nbgrader; default: all",
+    )
     options = command.parse_args()
+    if options.nbgrader:
+        try:
+            for path in assignments(options.names, Path(options.nbgrader)):
+                print(path)
+        except ValueError as problem:
+            raise SystemExit(f"no assignments: {problem}") from None
+        return 0
     sources = [path for path in sorted(SOURCES.rglob("*.py")) if not options.names or path.stem in options.names]
     if not sources:
         command.error(f"no source in {SOURCES} is called {' or '.join(options.names)}")
@@ -48,19 +63,49 @@ def main() -> int:
         return 0
     stale = {source: reason for source in sources if (reason := staleness(source))}
     orphans = [] if options.names else orphaned()
+    readme = HERE / "README.md"
+    guide = readme.read_text(encoding="utf-8") if readme.exists() and not options.names else ""
+    tables = teaching.with_tables(guide, SOURCES)
     if options.check:
         for source, reason in stale.items():
             print(f"stale: {target(source).relative_to(HERE.parent)}: {reason}; run python notebooks/build.py")
         for orphan in orphans:
             print(f"no source: {orphan.relative_to(HERE.parent)}")
+        if tables != guide:
+            print("stale: notebooks/README.md: its tables differ from the chapters; run python notebooks/build.py")
         print(f"{len(sources)} notebooks, {len(stale)} stale, {len(orphans)} without a source")
-        return 1 if stale or orphans else 0
+        return 1 if stale or orphans or tables != guide else 0
     for source in sources if options.all or options.names else stale:
         print(f"running {source.relative_to(SOURCES)}", flush=True)
         write(executed(jupytext.read(source)), target(source))
         if is_solution(source):
             write(exercise(source), exercise_target(source))
+    if tables != guide:
+        readme.write_text(tables, encoding="utf-8")
     return 0
+
+
+def assignments(names: list[str], course: Path) -> list[Path]:
+    """Write the exercises of chapters, or of all, as assignments into the folder of a course of nbgrader.
+
+    Raises
+    ------
+    ValueError
+        If a name is that of no chapter with exercises, or something is in the way.
+    """
+    every = {source.stem: source for source in sorted((SOURCES / "solutions").glob("*.py"))}
+    for name in names:
+        if not any(is_called(name, stem) for stem in every):
+            known = ", ".join(stem[:2] for stem in every)
+            raise ValueError(f"there are no exercises of chapter {name!r}; there are those of {known}")
+    chosen = {stem: source for stem, source in every.items() if not names or any(is_called(n, stem) for n in names)}
+    points = {one.number: one.minutes for source in chosen.values() for one in teaching.exercises_of(source)}
+    return write_assignments({stem: exercise(source) for stem, source in chosen.items()}, points, course)
+
+
+def is_called(name: str, stem: str) -> bool:
+    """Whether somebody means these exercises, by the number or the name of their chapter."""
+    return name in (stem[:2], stem.removesuffix("_exercises"), stem)
 
 
 def target(source: Path) -> Path:

@@ -249,4 +249,4 @@ def test_the_environment_has_what_the_package_asks_for():
         *project["dependencies"],
         *(one for name in groups if name not in ("bench", "sim") for one in groups[name]),
     ]
-    assert {re.split("[>=;]", one)[0] for one in asked} == pinned
+    assert {re.split("[>=;]", one)[0] for one in asked if not one.startswith("uavlab[")} == pinned

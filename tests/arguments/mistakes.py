@@ -113,6 +113,7 @@ EVERYTHING = "everything"
 
 RIGHTFUL = {
     "exercises.check.answer": {EVERYTHING},  # what a student hands in is looked at by each exercise
+    "exercises.grade.answer": {EVERYTHING},
     "route.Route.none.elapsed": {EVERYTHING},  # a note
     "planners.compare_planners.seeds": {"3 inside"},  # a seed
     "prediction.compare_models.seeds": {"3 inside"},

@@ -2,6 +2,7 @@
 
 import importlib
 import re
+import sys
 import threading
 import time
 
@@ -261,3 +262,35 @@ def test_long_inputs_are_shortened():
     hint = exercises.check("05.3", lambda occupied, *_: occupied.nothing).hint
     assert "raises AttributeError" in hint
     assert len(hint) < 400
+
+
+def test_grade_says_the_verdict_or_raises_the_hint(capsys):
+    octile = solutions_of("05")["octile"]
+    capsys.readouterr()
+    assert exercises.grade("05.2", octile) is None
+    assert capsys.readouterr().out == "05.2: right\n"
+    with pytest.raises(AssertionError, match=r"^05\.2: not yet\. That counts straight moves only"):
+        exercises.grade("05.2", lambda dx, dy, dz: dx + dy + dz)
+    with pytest.raises(ValueError, match="number must be that of an exercise"):
+        exercises.grade("05.99", 1)
+
+
+def test_grade_says_nothing_on_stderr(capsys):
+    """nbgrader would take it for a failure."""
+    octile = solutions_of("05")["octile"]
+
+    def answer(*moves):
+        print("obsolete", file=sys.stderr)
+        return octile(*moves)
+
+    exercises.grade("05.2", answer)
+    said = capsys.readouterr()
+    assert said.err == ""
+    assert "obsolete\n" in said.out
+    assert said.out.endswith("05.2: right\n")
+
+
+def test_a_notebook_shows_the_hint_alone():
+    with pytest.raises(AssertionError) as raised:
+        exercises.grade("05.1", "b")
+    assert raised.value._render_traceback_() == [str(raised.value)]

@@ -53,6 +53,16 @@ def test_a_right_answer_stays_right(saved):
     assert exercises.progress(folder).right == ("05.2",)
 
 
+def test_cells_that_give_points_count_too(saved):
+    """As nbgrader has them: printed when right, an exception when not."""
+    asked = {"cell_type": "code", "source": 'from uavlab import exercises\n\nexercises.grade("05.3", legal)'}
+    error = {"output_type": "error", "ename": "AssertionError", "evalue": "05.3: not yet. Which voxels?"}
+    right = {"output_type": "stream", "name": "stdout", "text": "05.3: right\n"}
+    assert "05.3" in exercises.progress(saved(one=[asked | {"outputs": []}])).untouched
+    assert exercises.progress(saved(one=[asked | {"outputs": [error]}])).tried == ("05.3",)
+    assert exercises.progress(saved(one=[asked | {"outputs": [right]}])).right == ("05.3",)
+
+
 def test_printed_verdicts_count_too(saved):
     printed = {"cell_type": "code", "source": "", "outputs": [{"output_type": "stream", "text": "05.2: right\n"}]}
     assert exercises.progress(saved(one=[printed])).right == ("05.2",)

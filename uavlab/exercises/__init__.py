@@ -9,6 +9,8 @@ function of the answer that returns a hint, or nothing when the answer is right.
 from __future__ import annotations
 
 import importlib
+import sys
+from contextlib import redirect_stderr
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +19,7 @@ from uavlab.exercises.done import Progress, progress
 from uavlab.exercises.kinds import Quiz
 from uavlab.exercises.watching import Watched, hint_from, shown
 
-__all__ = ["Progress", "Verdict", "check", "progress"]
+__all__ = ["Progress", "Verdict", "check", "grade", "progress"]
 
 
 @dataclass(frozen=True)
@@ -93,3 +95,40 @@ def check(number: str, answer: Any) -> Verdict:
             f"The check itself can't go on, with a {type(problem).__name__} ({problem}). That is its fault, not yours; "
             f"{led} led to it.",
         )
+
+
+def grade(number: str, answer: Any) -> None:
+    """Check the answer to an exercise in a cell that gives points, as nbgrader has them: a wrong one is an exception.
+
+    Parameters
+    ----------
+    number, answer
+        As for `check`.
+
+    Raises
+    ------
+    AssertionError
+        If the answer isn't right; its text is the hint of `check`.
+    ValueError
+        If `number` is no text, or not that of an exercise.
+
+    Examples
+    --------
+    >>> grade("05.1", "c")  # doctest: +ELLIPSIS
+    05.1: right. ...
+    >>> grade("05.1", ...)
+    Traceback (most recent call last):
+    uavlab.exercises.NotYetError: 05.1: not yet. There is no answer yet: put yours in the place of the dots.
+    """
+    with redirect_stderr(sys.stdout):  # nbgrader takes whatever a cell says on stderr, such as a warning, for a failure
+        verdict = check(number, answer)
+    if not verdict:
+        raise NotYetError(str(verdict))
+    print(verdict)
+
+
+class NotYetError(AssertionError):
+    """A wrong answer, of which a notebook shows the hint alone, without the lines that led to it."""
+
+    def _render_traceback_(self) -> list[str]:
+        return [str(self)]

@@ -14,6 +14,7 @@ from typing import Any
 
 from uavlab import checks
 
+ASKED = re.compile(r"exercises\.(?:check|grade)\(\s*[\"'](\d\d\.\d+)[\"']")
 VERDICT = re.compile(r"^(\d\d\.\d+): (right|not yet)", re.MULTILINE)
 
 
@@ -116,7 +117,7 @@ def verdicts(path: Path) -> Iterator[tuple[str, str]]:
     for cell in cells:
         if not isinstance(cell, Mapping) or cell.get("cell_type") != "code":
             continue
-        asked = re.findall(r"exercises\.check\(\s*[\"'](\d\d\.\d+)[\"']", text_of(cell.get("source", "")))
+        asked = re.findall(ASKED, text_of(cell.get("source", "")))
         shown = dict(VERDICT.findall("\n".join(output_texts(cell.get("outputs", [])))))
         for number in {*asked, *shown}:
             yield number, shown.get(number, "")
@@ -127,6 +128,7 @@ def output_texts(outputs: list[Any]) -> Iterator[str]:
     for output in outputs:
         yield text_of(output.get("text", ""))
         yield text_of(output.get("data", {}).get("text/plain", ""))
+        yield text_of(output.get("evalue", ""))
 
 
 def text_of(lines: str | list[str]) -> str:
