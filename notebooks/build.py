@@ -4,8 +4,9 @@
 `notebooks/*.ipynb` up to date and runs it in a fresh kernel; figures and printed results stay in, 3D pages are taken
 out (they come back with Run All, a still picture stands for them). Exercises are their solutions with the answers
 taken out. `--check` changes nothing and fails if anything is stale. `--html` runs notebooks and writes them to
-`notebooks/html/` as pages that work offline, each in one file with its scenes, sliders and equations. `--nbgrader
-FOLDER` makes assignments of the exercises. The tables for teachers in `notebooks/README.md` are kept up to date, too.
+`notebooks/html/` as pages that work offline, each in one file with its scenes, sliders and equations. `--page FILE`
+writes a project that a student has run and saved as such a page, beside it. `--nbgrader FOLDER` makes assignments of
+the exercises. The tables for teachers in `notebooks/README.md` are kept up to date, too.
 """
 
 import argparse
@@ -17,7 +18,7 @@ from pathlib import Path
 import jupytext
 import nbformat
 import teaching
-from exported import FOLDED, export
+from exported import FOLDED, export, handed_in
 from grading import write_assignments
 from nbclient import NotebookClient
 from nbformat import NotebookNode
@@ -42,7 +43,10 @@ def main() -> int:
         metavar="FOLDER",
         help="write exercises, as in 05 06, to FOLDER/source for nbgrader; default: all",
     )
+    command.add_argument("--page", type=Path, metavar="FILE", help="a saved notebook as a page to hand in, beside it")
     options = command.parse_args()
+    if options.page:
+        return page_of(options.page)
     if options.nbgrader:
         try:
             for path in assignments(options.names, Path(options.nbgrader)):
@@ -106,6 +110,18 @@ def assignments(names: list[str], course: Path) -> list[Path]:
 def is_called(name: str, stem: str) -> bool:
     """Whether somebody means these exercises, by the number or the name of their chapter."""
     return name in (stem[:2], stem.removesuffix("_exercises"), stem)
+
+
+def page_of(notebook: Path) -> int:
+    """Write the page of a project, and say what is missing in it."""
+    try:
+        path, blank = handed_in(notebook)
+    except ValueError as problem:
+        raise SystemExit(f"no page: {problem}") from None
+    print(path)
+    if blank:
+        print(f"not written yet: {', '.join(blank)}")
+    return 0
 
 
 def target(source: Path) -> Path:

@@ -8,6 +8,7 @@ import html
 import re
 from pathlib import Path
 
+import nbformat
 from equations import Equations
 from jinja2 import pass_context
 from jinja2.runtime import Context
@@ -29,8 +30,12 @@ TEMPLATE = """{% extends 'lab/index.html.j2' %}
 {% block data_latex scoped %}{{ output.data['text/latex'] | markdown2html }}{% endblock %}
 {% block body_footer %}{{ equations.letters() }}{{ super() }}{% endblock %}
 """
-FOLDED = {"check": "Code that checks", "figure": "Code of the figure"}
+GUIDE = "guide"
+"""Tag of cells that tell a student how to make a project; they aren't part of it."""
+FOLDED = {"check": "Code that checks", "figure": "Code of the figure", GUIDE: "Code that prepares"}
 """Tags of cells whose code is out of the reader's way, and what stands in its place."""
+ANSWER = re.compile(r"\s*\*\*(Answer \d+)\.\*\*\s*(?:…|\.\.\.)?\s*")
+"""An answer that isn't written yet."""
 STYLE = """
 .uavlab-folded > summary { margin-left: 64px; color: var(--jp-ui-font-color2); cursor: pointer; font-size: 12px }
 .jp-InputArea-editor, .jp-OutputArea-output { overflow-x: auto }
@@ -47,6 +52,33 @@ def export(notebook: NotebookNode, name: str, folder: Path) -> Path:
     path = folder / f"{name}.html"
     path.write_text(page, encoding="utf-8")
     return path
+
+
+def handed_in(path: Path) -> tuple[Path, list[str]]:
+    """Write a project as it was saved as a page beside it; the page, and the answers that are missing.
+
+    Cells that explain are left out, and code is folded. `ValueError` says what isn't run.
+    """
+    if not path.is_file():
+        raise ValueError(f"there is no file {path}")
+    try:
+        notebook = nbformat.read(path, as_version=4)
+    except (ValueError, KeyError, AttributeError):
+        raise ValueError(f"{path.name} is no notebook (.ipynb)") from None
+    code = [cell for cell in notebook.cells if cell.cell_type == "code" and cell.source.strip()]
+    if any(output.output_type == "error" for cell in code for output in cell.outputs):
+        raise ValueError(f"a cell of {path.name} failed: mend it, Restart Kernel and Run All Cells, save")
+    if [cell.execution_count for cell in code] != list(range(1, len(code) + 1)):
+        raise ValueError(f"{path.name} wasn't run from top to bottom: Restart Kernel and Run All Cells, save")
+    outputs = [output.get("data", {}) for cell in code for output in cell.outputs]
+    if any(str(data.get("text/plain", "")).startswith("<Scene") and "text/html" not in data for data in outputs):
+        raise ValueError(f"the scene of {path.name} is a still picture yet: Restart Kernel and Run All Cells, save")
+    notebook.cells = [cell for cell in notebook.cells if GUIDE not in cell.metadata.get("tags", [])]
+    for cell in notebook.cells:
+        if cell.cell_type == "code" and not set(FOLDED) & set(cell.metadata.get("tags", [])):
+            cell.metadata["tags"] = [*cell.metadata.get("tags", []), "code"]
+    blank = [found[1] for cell in notebook.cells if (found := ANSWER.fullmatch(cell.source))]
+    return export(notebook, path.stem, path.parent), blank
 
 
 def described(notebook: NotebookNode) -> NotebookNode:
@@ -71,7 +103,9 @@ class Exporter(HTMLExporter):
         self.equations = Equations()
         super().__init__(raw_template=TEMPLATE, template_name="lab")
         self.environment.globals |= {"equations": self.equations, "style": STYLE}
-        self.environment.filters["folded"] = lambda tags: next((FOLDED[tag] for tag in tags or () if tag in FOLDED), "")
+        self.environment.filters["folded"] = lambda tags: next(
+            ((FOLDED | {"code": "Code"})[tag] for tag in tags or () if tag in FOLDED or tag == "code"), ""
+        )
 
     @pass_context
     def markdown2html(self, context: Context, source: str) -> str:

@@ -285,6 +285,12 @@ def test_layers_show_people_shelter_and_cars_with_units():
     assert {"thousands of people per km²", "ground under cars [m² per km²]"} <= set(labels(figure))
 
 
+def test_layers_that_are_the_same_everywhere_have_a_scale_from_zero():
+    city = reference_campus().city
+    figure = plot.layers(RiskMap(city, 0.005, 0.25, 0.0))
+    assert [axes.images[0].get_clim() for axes in figure.axes if axes.images] == [(0, 5), (0, 0.25), (0, 1)]
+
+
 def test_front_draws_length_against_risk():
     campus = reference_campus()
     routes = pareto_front(campus, *CAMPUS_FLIGHT, lengths=4)

@@ -9,11 +9,14 @@ import rasterio
 from rasterio.transform import Affine
 
 from uavlab.city import City, read_city, read_no_fly, read_terrain, read_voxels
-from uavlab.city.place import Place
-from uavlab.risk import osm_layers
+from uavlab.city.place import Place, system_of
+from uavlab.risk import osm_layers, read_people
 from uavlab.weather import read_weather
 
 TOWN = City(np.zeros((20, 20, 5), bool), 5.0, reference=Place(4.36, 52.01, 0.0))
+DUTCH = City(
+    np.zeros((2, 2, 2), bool), 2.0, reference=Place(*system_of("EPSG:28992").to_lonlat((85_005, 446_990)), 0.0)
+)
 JUNK = (
     b"",
     b"0",
@@ -75,6 +78,8 @@ READERS = {
     "streets.geojson": (lambda _: collection(road(), square(landuse="forest")), lambda path: osm_layers(TOWN, path)),
     "hills.asc": (lambda _: grid(), read_terrain),
     "hills.tif": (raster, read_terrain),
+    "people.asc": (lambda _: grid(), lambda path: read_people(TOWN, path, crs="local", elsewhere=0.01)),
+    "people.tif": (raster, lambda path: read_people(DUTCH, path, elsewhere=0.01)),
     "hours.csv": (lambda _: hours(), read_weather),
 }
 

@@ -66,6 +66,7 @@ from things import (
     model_file,
     monitor,
     out,
+    people_file,
     plan_file,
     predictor,
     road_file,
@@ -693,6 +694,9 @@ CALLS = {
     },
     "risk.printed_threat": lambda: {"route": LINE, "city": TOWN, "constant": 128.0},
     "risk.random_campus": lambda: {"rng": 1, "cell": 10.0},
+    "risk.read_people": lambda: {
+        "city": TOWN, "path": people_file(), "per": "pixel", "crs": "local", "elsewhere": 0.015625,
+    },
     "risk.raster_layer": lambda: {
         "city": TOWN, "values": PLAN[:4, :5], "bounds": (0.0, 0.0, 10.0, 12.0), "crs": None, "per": "km²", "fill": 0.5,
     },

@@ -167,6 +167,10 @@ def terrain_file():
     )
 
 
+def people_file():
+    return written("people.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 6\n4 5\n6 7\n")
+
+
 def weather_file():
     return written(
         "weather.csv", "time,temperature [°C],wind speed (km/h)\n2026-01-01T00:00,15,10\n2026-01-01T01:00,16,11\n"

@@ -59,7 +59,7 @@ def test_an_ascii_grid_begins_in_the_north(tmp_path):
         (("cellsize 10", "cellsize 0.0003"), "in degrees they need crs='EPSG:4326'"),
         (("4 5", "-inf 5"), "heights must not be infinite, 1 are"),
         (("4 5", "4 x5"), "ground.asc, line 8: expected a number, got 'x5'"),
-        (("4 5 -9999", "4 5"), "must have 2 × 3 heights, as its header says, got 5"),
+        (("4 5 -9999", "4 5"), "must have 2 × 3 values, as its header says, got 5"),
         (("NODATA_value -9999", "NODATA_value -8888"), "heights on Earth, .* got -9999"),
     ],
 )

@@ -71,11 +71,17 @@ def terrain_or_file(terrain: Any) -> Terrain | Path | float | None:
 
 
 def read_ascii_grid(path: Path, crs: Any) -> Terrain:
-    """An ESRI ASCII grid: lines "name value", then rows of heights from north to south."""
+    """An ESRI ASCII grid of heights."""
+    heights, bounds = ascii_grid(path)
+    return Terrain.from_raster(heights, bounds, crs=system_beside(path) if crs is None else crs)
+
+
+def ascii_grid(path: Path) -> tuple[np.ndarray, tuple[float, float, float, float]]:
+    """Values and bounds of an ESRI ASCII grid: lines "name value", then rows from north to south; NaN for no data."""
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise ValueError(f"{path.name} is neither a GeoTIFF nor an ASCII grid of heights (.asc)") from None
+        raise ValueError(f"{path.name} is neither a GeoTIFF nor an ASCII grid (.asc)") from None
     header: dict[str, float] = {}
     for number, line in enumerate(lines, 1):
         words = line.split()
@@ -89,7 +95,7 @@ def read_ascii_grid(path: Path, crs: Any) -> Terrain:
     corner += ["yllcenter" if "yllcenter" in header else "yllcorner"]
     absent = [name for name in (*sorted(needed), *corner) if name not in header]
     if absent:
-        raise ValueError(f"{path.name} has no line {absent[0]!r} in its header: is it an ASCII grid of heights (.asc)?")
+        raise ValueError(f"{path.name} has no line {absent[0]!r} in its header: is it an ASCII grid (.asc)?")
     dx, dy = (header.get(name, header.get("cellsize", 0.0)) for name in ("dx", "dy"))
     rows, columns = (whole_number(name, header[name], path) for name in ("nrows", "ncols"))
     if not (0 < dx < np.inf and 0 < dy < np.inf):
@@ -105,13 +111,12 @@ def read_ascii_grid(path: Path, crs: Any) -> Terrain:
                 number_in(word, path, number)
         raise
     if len(values) != rows * columns:
-        raise ValueError(f"{path.name} must have {rows} × {columns} heights, as its header says, got {len(values)}")
-    heights = values.reshape(rows, columns)
-    heights[np.isclose(heights, header.get("nodata_value", -9999.0), rtol=1e-6, atol=0.0)] = np.nan  # it may be rounded
+        raise ValueError(f"{path.name} must have {rows} × {columns} values, as its header says, got {len(values)}")
+    grid = values.reshape(rows, columns)
+    grid[np.isclose(grid, header.get("nodata_value", -9999.0), rtol=1e-6, atol=0.0)] = np.nan  # it may be rounded
     west = header[corner[0]] - (dx / 2 if corner[0] == "xllcenter" else 0.0)
     south = header[corner[1]] - (dy / 2 if corner[1] == "yllcenter" else 0.0)
-    bounds = west, south, west + columns * dx, south + rows * dy
-    return Terrain.from_raster(heights, bounds, crs=system_beside(path) if crs is None else crs)
+    return grid, (west, south, west + columns * dx, south + rows * dy)
 
 
 def system_beside(path: Path) -> System | None:

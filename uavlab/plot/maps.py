@@ -391,7 +391,9 @@ def layers(risk_map: RiskMap) -> Figure:
         (1e6 * risk_map.vehicle_share, "ground under cars [m² per km²]"),
     )
     for axes, (layer, label) in zip(panels, shown, strict=True):
-        image = draw_map(axes, risk_map.city, layer, SEQUENTIAL)
+        low, high = float(layer.min()), float(layer.max())
+        limits = {} if low < high else {"vmin": 0.0, "vmax": high or 1.0}  # one value everywhere
+        image = draw_map(axes, risk_map.city, layer, SEQUENTIAL, **limits)
         figure.colorbar(image, ax=axes, location="bottom", label=label)
     for axes in panels[1:]:
         axes.set_ylabel("")

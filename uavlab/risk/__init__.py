@@ -18,6 +18,7 @@ from uavlab.risk.fall import (
 from uavlab.risk.layers import raster_layer, road_layer, shelter_layer
 from uavlab.risk.model import RiskMap
 from uavlab.risk.osm import CARS_BY_CLASS, osm_layers
+from uavlab.risk.people import read_people
 from uavlab.risk.rates import (
     POPULATION_DENSITY,
     SHELTER,
@@ -61,6 +62,7 @@ __all__ = [
     "random_campus",
     "raster_layer",
     "raw_igrc",
+    "read_people",
     "reference_campus",
     "road_layer",
     "shelter_layer",

@@ -78,6 +78,7 @@ def raster_layer(
 
     See Also
     --------
+    read_people : people from a file.
     road_layer : cars from the lines of roads.
     uavlab.city.Terrain.from_raster : heights of the ground from a raster.
 
@@ -134,14 +135,7 @@ def part_around(
     city: City, raster: np.ndarray, edges: np.ndarray, system: System | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """The pixels of a raster that may lie on the map, and their bounds; `ValueError` if there are none."""
-    (west, south), (east, north) = city.bounds[:, :2]
-    along = np.linspace(0.0, 1.0, 33)
-    border = np.concatenate(
-        [np.column_stack([west + along * (east - west), np.full(33, y)]) for y in (south, north)]
-        + [np.column_stack([np.full(33, x), south + along * (north - south)]) for x in (west, east)]
-    )
-    if system is not None:
-        border = system.from_lonlat(city.checked_reference().longitude_latitude(border))
+    border = border_of(city, system)
     rows, columns = raster.shape
     width, height = (edges[2] - edges[0]) / columns, (edges[3] - edges[1]) / rows
     first_column, last_column = (np.array([border[:, 0].min(), border[:, 0].max()]) - edges[0]) / width
@@ -154,6 +148,17 @@ def part_around(
     r0, r1 = max(int(np.floor(first_row)) - 1, 0), min(int(np.ceil(last_row)) + 1, rows)
     part = np.array([edges[0] + c0 * width, edges[3] - r1 * height, edges[0] + c1 * width, edges[3] - r0 * height])
     return raster[r0:r1, c0:c1], part
+
+
+def border_of(city: City, system: System | None) -> np.ndarray:
+    """Points (N, 2) around the map, in metres of the city or in a system."""
+    (west, south), (east, north) = city.bounds[:, :2]
+    along = np.linspace(0.0, 1.0, 33)
+    border = np.concatenate(
+        [np.column_stack([west + along * (east - west), np.full(33, y)]) for y in (south, north)]
+        + [np.column_stack([np.full(33, x), south + along * (north - south)]) for x in (west, east)]
+    )
+    return border if system is None else system.from_lonlat(city.checked_reference().longitude_latitude(border))
 
 
 def pixels_of(city: City, shape: tuple[int, ...], edges: np.ndarray, system: System | None) -> np.ndarray:

@@ -57,6 +57,7 @@ class RiskMap:
     See Also
     --------
     reference_campus : a map to begin with.
+    read_people : people from a file.
     raster_layer : people from a raster.
     uavlab.planners.least_risk : plans over it.
 
