@@ -79,7 +79,7 @@ def fall_speed(
         ρ_A [kg/m³].
     as_printed : bool
         Half the exponent: V_y² → g h instead of 2 g h for small h, so half of the energy is lost. At 30 m it gives
-        16.8 instead of 23.4 m/s. (RISK-ACO drops ρ_A as well, which leaves the exponent with a unit, m³/kg.)
+        16.8 instead of 23.4 m/s.
 
     Returns
     -------
