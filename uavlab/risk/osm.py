@@ -94,8 +94,8 @@ def osm_layers(
     path : str or Path
         UTF-8 text, as for `read_geojson`.
     cars_per_km : float, or mapping from classes of `highway` to floats
-        K, cars per kilometre of a lane, at least 0. By default the papers' 0.1 on all roads, which is next to none; by class
-        `CARS_BY_CLASS` has assumed values of an ordinary day. A class that a mapping leaves out has no cars.
+        K, cars per kilometre of a lane, at least 0. By default the papers' 0.1 on all roads, next to none;
+        `CARS_BY_CLASS` has, by class, assumed values of an ordinary day. A class that a mapping leaves out has no cars.
     lane_width : float
         D_road [m], above 0, of roads that tell their lanes or nothing.
     crs : anything that pyproj takes, optional

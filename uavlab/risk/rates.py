@@ -193,7 +193,7 @@ def vehicle_share(cars_per_km: npt.ArrayLike = CARS_PER_KM, lane_width: npt.Arra
     Parameters
     ----------
     cars_per_km : float or array
-        K, cars per kilometre of a lane, at least 0; 0.1, a car on ten kilometres, is the papers' number, 10 a busy road.
+        K, cars per kilometre of a lane, at least 0; 0.1 in the papers, next to none; 10 is a busy road.
     lane_width : float or array
         D_road [m], above 0; 3 in the papers. The two are broadcast.
 
