@@ -1,4 +1,4 @@
-"""Exercises of chapter 8, risk maps: the speed of a fall, the chance that a blow kills, the deaths that a route costs.
+"""Exercises of chapter 8, risk maps: a parachute, cars, a blow, the deaths of a route, a speed, and two routes.
 
 A mistake is recognised by what it answers; its hint says why that can't be.
 """
@@ -7,109 +7,95 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 
+from uavlab.city import City
 from uavlab.exercises.hints import each_alike, recognised
-from uavlab.exercises.kinds import asks_for, number
-
-GRAVITY = 9.81
-FALLS = [
-    (0.0, 1.38, 0.3 * 0.0188, 1.225),
-    (0.5, 1.38, 0.3 * 0.0188, 1.225),
-    (30.0, 1.38, 0.3 * 0.0188, 1.225),
-    (30.0, 1.38, 0.06, 1.225),
-    (120.0, 2.5, 0.04, 0.9),
-]
-"""Height, mass, drag area, air density."""
+from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, number, shape_of, thing
+from uavlab.risk import RiskMap, person_rate
+from uavlab.route import Route
 
 EVEN_ODDS_ENERGY, LEAST_FATAL_ENERGY = 1e6, 34.0
 BLOWS = [(energy, shelter) for energy in (5.0, 34.0, 100.0, 555.0, 1e4, 1e6) for shelter in (0.25, 0.5, 0.75, 1.0)]
-IN_THE_OPEN = [(5.0, 0.0), (33.0, 0.0), (35.0, 0.0), (555.0, 0.0), (1e7, 0.0)]
+WITHOUT_SHELTER = [(5.0, 0.0), (33.0, 0.0), (35.0, 0.0), (555.0, 0.0), (1e7, 0.0)]
 
 
 def same(given: Sequence[Any], right: Sequence[float], relative: float = 1e-9) -> bool:
     return each_alike(map(float, given), right, partial(math.isclose, rel_tol=relative, abs_tol=1e-15))
 
 
-@asks_for(number("the speed [m/s]"))
-def exercise_1(answer: Callable[[float, float, float, float], float]) -> str:
-    """08.1: vertical speed after a fall from rest with drag."""
-    given = [answer(*fall) for fall in FALLS]
-    same_speeds = partial(same, relative=1e-3)  # g = 9.8 m/s² is right too
-    if same_speeds(given, [speed_after(*fall) for fall in FALLS]):
+exercise_1 = Quiz(
+    right="b",
+    because="In the papers' fall the wreck keeps 16 m/s forward and 177 J; in the full fall the parachute takes both.",
+    wrong={
+        "a": "The blow is softer in both, that is true. But how much energy is left in the papers' fall: less than "
+        "34 J? And how far does the wreck fly between the height of a head and the ground?",
+        "c": "For the papers' fall that is right. In the full fall drag acts against the whole velocity. How fast is "
+        "the wreck forward when it has sunk for seconds under a parachute?",
+        "d": "You have exchanged them. In which of the two falls does the wreck keep its speed forward?",
+    },
+)
+
+ROADS = [(0.1, 3.0), (20.0, 6.0), (35.0, 7.5), (0.0, 6.0), (80.0, 14.0)]
+"""Cars per kilometre of the whole road, and its width [m]."""
+
+
+@asks_for(number("the deaths per hour of flight"))
+def exercise_2(answer: Callable[[float, float], float]) -> str:
+    """08.2: deaths in cars per hour of flight over a road, from the cars of all its lanes."""
+    given = [answer(*road) for road in ROADS]
+    if same(given, [deaths_on_road(*road) for road in ROADS], 1e-6):
         return ""
-    if hint := recognised(given, FALL_MISTAKES, FALLS, same_speeds):
-        return hint
-    if any(not np.isfinite(speed) for speed in given):
-        return "Some speeds are no finite number. What is under the root, and can it be negative?"
-    return (
-        f"After 30 m with 1.38 kg, 0.00564 m² and 1.225 kg/m³ you get {given[2]:.2f} m/s. Two tests: for a short fall "
-        "V² must go to 2 g h, and for a long one m g = ½ · drag area · air density · V²."
+    return recognised(given, ROAD_MISTAKES, ROADS, partial(same, relative=1e-6)) or (
+        "Take a square kilometre of road with 1000 cars of 8.4 m² on it: cars cover 0.84 % of it. So each failure "
+        "above it costs 0.0252 lives. For 20 cars per km on a road of 6 m you get "
+        f"{float(given[1]):.3g} deaths per hour."
     )
 
 
-def speed_after(
-    height: float, mass: float, drag_area: float, air_density: float, factor: float = 2.0, power: float = 0.5
-) -> float:
-    """The right speed; with other factors in the exponent, or another power, some of the wrong ones."""
-    terminal = 2 * mass * GRAVITY / (drag_area * air_density)
-    return float((terminal * -math.expm1(-factor * GRAVITY * height / terminal)) ** power)
+def deaths_on_road(cars_per_km: float, width: float) -> float:
+    return 6.4e-5 * 3 * 8.4 * cars_per_km / 1000 / width
 
 
-def speed_without_density(height: float, mass: float, drag_area: float, air_density: float) -> float:
-    """As in RISK-ACO, but with the right factor: the density is lost."""
-    return speed_after(height, mass, drag_area, 1.0)
-
-
-def speed_in_time(height: float, mass: float, drag_area: float, air_density: float) -> float:
-    """V∞ tanh(g t / V∞), right at a time, with the time of a fall without air."""
-    terminal = math.sqrt(2 * mass * GRAVITY / (drag_area * air_density))
-    return terminal * math.tanh(math.sqrt(2 * GRAVITY * height) / terminal)
-
-
-FALL_MISTAKES: list[tuple[Callable[[float, float, float, float], float], str]] = [
+ROAD_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
     (
-        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, factor=1.0),
-        "That is the formula as it is printed. Drop the wreck by a few centimetres: does its V² go to 2 g h?",
+        lambda cars, width: deaths_on_road(cars, 3.0),
+        "You divide by one lane, but the cars were counted on all lanes. On what area do they stand?",
     ),
     (
-        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, 1.0, factor=1.0),
-        "That is RISK-ACO's formula as printed. Give your result a unit: what has been lost? And after a few "
-        "centimetres, does V² go to 2 g h?",
+        lambda cars, width: 1000 * deaths_on_road(cars, width),
+        "You take cars per kilometre for cars per metre: your cars would stand on top of each other.",
     ),
     (
-        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, factor=4.0),
-        "After a few centimetres your V² is 4 g h: more energy than gravity has given.",
+        lambda cars, width: deaths_on_road(cars, width) / 3,
+        "That is how often a car is hit. How many people die in each?",
     ),
     (
-        lambda height, mass, drag_area, air_density: math.sqrt(2 * GRAVITY * height),
-        "That is a fall without air. How much of the energy does the drag take away on the next metre?",
+        lambda cars, width: deaths_on_road(cars, width) / 6.4e-5,
+        "That is the deaths per failure. How often does the UAV fail in an hour of flight?",
     ),
     (
-        lambda height, mass, drag_area, air_density: math.sqrt(2 * mass * GRAVITY / (drag_area * air_density)),
-        "That is the terminal speed, which a very long fall leads to. How near to it is the wreck after `height`?",
+        lambda cars, width: deaths_on_road(cars, width) / 3 / 6.4e-5,
+        "That is the share of the road that cars cover. Two factors are missing: how often does the UAV fail, and what "
+        "does a hit cost?",
     ),
     (
-        lambda height, mass, drag_area, air_density: speed_in_time(height, mass, drag_area, air_density),
-        "That is the speed after the time that a fall without air takes. Does the wreck need the same time for it?",
+        lambda cars, width: deaths_on_road(cars, 1 / width),
+        "The same cars on a wider road: is it more likely that a wreck hits one of them, or less?",
     ),
     (
-        lambda height, mass, drag_area, air_density: speed_after(height, mass, drag_area, air_density, power=1.0),
-        "That is the square of the speed: energy obeys the simple equation, and the question is for the speed.",
-    ),
-    (
-        speed_without_density,
-        "In half the air the wreck must fall faster, and yours doesn't care: where is the density?",
+        lambda cars, width: deaths_on_road(cars, 3.0) * width / 3.0,
+        "You count the cars once more for each lane, but the number is that of all lanes already.",
     ),
 ]
 
 
 @asks_for(number("a chance, from 0 to 1"))
-def exercise_2(answer: Callable[[float, float], float]) -> str:
-    """08.2: the chance that a blow kills, in the open too."""
+def exercise_3(answer: Callable[[float, float], float]) -> str:
+    """08.3: the chance that a blow kills, also without shelter."""
     given = [answer(*blow) for blow in BLOWS]
     if not same(given, [chance_to_die(*blow) for blow in BLOWS]):
         return recognised(given, FATALITY_MISTAKES, BLOWS, same) or (
@@ -117,22 +103,22 @@ def exercise_2(answer: Callable[[float, float], float]) -> str:
             "kill one in two there, and at 34 J the shelter must make no difference."
         )
     try:
-        limits = [answer(*blow) for blow in IN_THE_OPEN]
+        limits = [answer(*blow) for blow in WITHOUT_SHELTER]
     except ZeroDivisionError:
         return (
-            "With shelter it is right. In the open it divides by zero: what does the power go to when the shelter goes "
-            "to 0, for energies below β and above it?"
+            "With shelter it is right. Without shelter it divides by zero: what does the power go to when the shelter "
+            "goes to 0, for energies below E_β and above it?"
         )
     except OverflowError:
-        return "With shelter it is right. In the open the power grows without bound: what does the chance go to then?"
+        return "With shelter it is right. Without it the power grows without bound: what does the chance go to then?"
     if same(limits, [0, 0, 1, 1, 1]):
         return ""
     if same(limits, [1, 1, 1, 1, 1]):
-        return "With shelter it is right. In the open you let every blow kill, one of 5 J too. What does β mean?"
+        return "With shelter it is right. Without it you let every blow kill, one of 5 J too. What does E_β mean?"
     if same(limits, [1, 1, 0, 0, 0]):
-        return "With shelter it is right. In the open it is the wrong way round: more energy can't kill less."
+        return "With shelter it is right. Without it it is the wrong way round: more energy can't kill less."
     return (
-        f"With shelter it is right. In the open you have {limits[1]:.3g} for 33 J and {limits[2]:.3g} for 35 J. Let "
+        f"With shelter it is right. Without it you have {limits[1]:.3g} for 33 J and {limits[2]:.3g} for 35 J. Let "
         "the shelter go to 0: what remains of a number below 1 to a power without bound, and of one above 1?"
     )
 
@@ -146,7 +132,7 @@ FATALITY_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
     (
         lambda energy, shelter: 1 / (1 + math.sqrt(1e6 / 34 * (34 / energy) ** (1 / (4 * shelter)))),
         "With your bracket the root covers the power as well, and 10⁶ J kill 7 % behind shelter 0.5. How many should "
-        "it be, by the meaning of α?",
+        "it be, by the meaning of E_α?",
     ),
     (
         lambda energy, shelter: 1 / (1 + math.sqrt(1e6 / 34) * (energy / 34) ** (1 / (4 * shelter))),
@@ -154,16 +140,16 @@ FATALITY_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
     ),
     (
         lambda energy, shelter: 1 / (1 + 1e6 / 34 * (34 / energy) ** (1 / (4 * shelter))),
-        "There is a root over α/β. Without it 10⁶ J kill hardly anybody behind shelter 0.5.",
+        "There is a root over E_α/E_β. Without it 10⁶ J kill hardly anybody behind shelter 0.5.",
     ),
     (
         lambda energy, shelter: 1 / (1 + math.sqrt(34 / 1e6) * (34 / energy) ** (1 / (4 * shelter))),
-        "Behind shelter 0.5 your blow of 34 J kills 99 %: which of α and β is the larger, and which stands above?",
+        "Behind shelter 0.5 your blow of 34 J kills 99 %: which of E_α and E_β is the larger, and which stands above?",
     ),
     (
         lambda energy, shelter: 1 / (1 + math.sqrt(1e6 / 34) * (34 / energy) ** (shelter / 4)),
-        "With more energy than β a better shelter must protect better, and yours does the opposite: mind the brackets "
-        "in the exponent.",
+        "With more energy than E_β a better shelter must protect better, and yours does the opposite: mind the "
+        "brackets in the exponent.",
     ),
     (
         lambda energy, shelter: chance_to_die(energy, 1.0),
@@ -173,8 +159,8 @@ FATALITY_MISTAKES: list[tuple[Callable[[float, float], float], str]] = [
 
 
 @asks_for(number("the expected deaths"))
-def exercise_3(answer: Callable[[np.ndarray, np.ndarray, float, float], float]) -> str:
-    """08.3: expected deaths on a route over a risk map."""
+def exercise_4(answer: Callable[[np.ndarray, np.ndarray, float, float], float]) -> str:
+    """08.4: expected deaths on a route over a risk map."""
     missions = [random_mission(seed) for seed in range(6)]
     given = [answer(*mission) for mission in missions]
     if same(given, [expected_deaths(*mission) for mission in missions], relative=1e-6):
@@ -272,7 +258,7 @@ ROUTE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray, float, float], floa
     ),
     (
         lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * speed,
-        "How fast the UAV flies makes no difference for you. Who is longer above a crowd?",
+        "How fast the UAV flies makes no difference for you. Which UAV is for longer above a crowd?",
     ),
     (
         lambda rate, voxels, cell, speed: expected_deaths(rate, voxels, cell, speed) * speed**2,
@@ -284,3 +270,93 @@ ROUTE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray, float, float], floa
         "does the UAV take for them?",
     ),
 ]
+
+
+BEST_SPEED, NEAR = 13.0, 0.25
+"""Where r(v)/v over sparse trees is least, 30 m high [m/s]; the test of the chapter computes it."""
+
+
+@asks_for_value(number("the speed with the fewest deaths per metre [m/s]"))
+def exercise_5(speed: float) -> str:
+    """08.5: the speed with the fewest expected deaths per metre flown over sparse trees."""
+    value = float(speed)
+    if not 0 < value < 100:
+        return "A speed from 1 to 40 m/s is asked for."
+    if abs(value - BEST_SPEED) <= NEAR:
+        return ""
+    for mistake, near, hint in SPEED_MISTAKES:
+        if abs(value - mistake) <= near:
+            return hint
+    deaths, best = (float(person_rate(30.0, shelter=0.25, speed=v)) / v for v in (value, BEST_SPEED))
+    why = "over each place for longer than need be" if value < BEST_SPEED else "hitting more people, and harder"
+    return f"At {value:g} m/s it is {why}: {deaths / best - 1:.1%} more deaths per metre than at the best speed."
+
+
+SPEED_MISTAKES: list[tuple[float, float, str]] = [
+    (
+        1.0,
+        1.0,
+        "There the deaths per *hour* are fewest. A slow UAV needs more hours for the same way: what is it per metre?",
+    ),
+    (40.0, 0.5, "That is the upper end of what was asked for. Is it least there? Look at a place with shelter 0.25."),
+    (16.0, 0.05, "That is the papers' speed. Nobody chose it for having few deaths: try others."),
+    (16.2, 0.15, "That is the best speed of the full fall (`ballistic=True`). Here the papers' fall is asked for."),
+    (17.8, 0.25, "That is the best speed behind shelter 0.5. Sparse trees have 0.25."),
+]
+"""Speed, how near an answer has to be [m/s], and the hint."""
+
+START, GOAL, CLEARLY = (2.5, 2.5, 27.5), (47.5, 47.5, 27.5), 1.2
+
+
+@cache
+def field() -> RiskMap:
+    """A map with the same people and shelter everywhere."""
+    return RiskMap(City(np.zeros((12, 12, 12), dtype=bool), cell=5.0), np.array(0.03), np.array(0.5))
+
+
+@asks_for_value(thing(tuple, "a pair of routes, (first, second), each a list of points (x, y, z)"))
+def exercise_6(pair: tuple[Any, Any]) -> str:
+    """08.6: two routes of which the papers' sum prefers the one that causes more deaths."""
+    if len(pair) != 2:
+        return f"Your tuple has {len(pair)} parts. There are two: (first, second)."
+    for name, points in zip(("first", "second"), pair, strict=True):
+        if hint := wrong_points(name, points):
+            return hint
+    first, second = (Route(np.asarray(points, dtype=float)) for points in pair)
+    sums = field().cell_sum(first) / field().cell_sum(second)
+    deaths = field().fatalities(first) / field().fatalities(second)
+    if sums <= 1 / CLEARLY + 1e-9 and deaths >= CLEARLY - 1e-9:
+        return ""
+    if sums >= CLEARLY and deaths <= 1 / CLEARLY:
+        return "That is such a pair, but the other way round: the first is to have the smaller sum and more deaths."
+    if abs(sums - 1) < 1e-6 and abs(deaths - 1) < 1e-6:
+        return "For the sum and for the deaths your routes are the same. Make one of them long, but through few voxels."
+    if sums < 1 < deaths:
+        return (
+            f"The sum prefers the wrong one, but not clearly: the first has {sums:.2f} times the sum and {deaths:.2f} "
+            "times the deaths of the second. It is to be at most 1/1.2 and at least 1.2."
+        )
+    if deaths > 1:
+        return (
+            f"The first causes more deaths ({deaths:.2f} times), but its sum is larger, too ({sums:.2f} times). How "
+            "can a long way pass few voxels, and a short one many?"
+        )
+    return (
+        f"The first has {sums:.2f} times the sum of the second and {deaths:.2f} times its deaths: where it has fewer "
+        "deaths, the sum is no trap. On this map deaths go with the length. Which moves are long within one voxel?"
+    )
+
+
+def wrong_points(name: str, points: Any) -> str:
+    """What is wrong with a list of points, if anything."""
+    shape = shape_of(points)
+    if shape is None or len(shape) != 2 or shape[0] < 2 or shape[1] != 3:
+        return f"The {name} route is no list of at least two points (x, y, z)."
+    way = np.asarray(points, dtype=float)
+    if not np.isfinite(way).all():
+        return f"The {name} route has a point that is no number."
+    if not (np.allclose(way[0], START) and np.allclose(way[-1], GOAL)):
+        return f"The {name} route has to lead from {START} to {GOAL}."
+    if (way < 0).any() or (way >= 60.0).any() or (way[:, 2] < 3.0).any():
+        return f"The {name} route leaves the map, which is 60 m wide and high, or flies lower than 3 m."
+    return ""
