@@ -213,6 +213,7 @@ class RiskMap:
         The UAV flies at cruise speed in the direction of the move (`uavlab.planners.grid.MOVES`) and fails at the
         voxel's centre; its ballistic fall ends on the ground, on a roof or against a wall. It is slower on impact than
         in `rate`, which keeps the forward speed as the papers do: without drift r would be about a tenth lower.
+        Beyond the border of the map the ground is taken to go on as it is at the border, and to be free of buildings.
         """
         index = np.argwhere(np.ones(self.city.shape, dtype=bool))
         moves = np.argwhere(np.ones((3, 3, 3), dtype=bool)) - 1
