@@ -5,30 +5,14 @@ import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import linprog
 
-from uavlab.exercises import check
+from uavlab.exercises import chapter12, check
 from uavlab.spline import curvature as curvature_of_uavlab
-
-
-@pytest.mark.parametrize("number", ["12.1", "12.2", "12.3"])
-def test_a_blank_answer_is_no_answer(number, blank):
-    assert "still raises NotImplementedError" in check(number, blank).hint
-    assert "return" in check(number, lambda *_: None).hint
-
-
-@pytest.mark.parametrize(("number", "name"), [("12.1", "curvature"), ("12.2", "control_points"), ("12.3", "speeds")])
-def test_the_solutions_are_right(number, name, solutions):
-    assert check(number, solutions[name])
 
 
 def by_gram(first, second):
     """κ by scalar products alone, without a vector product."""
     a, b, c = ((u * v).sum(axis=1) for u, v in ((first, first), (second, second), (first, second)))
     return np.sqrt(a * b - c**2) / a**1.5
-
-
-@pytest.mark.parametrize("answer", [by_gram, curvature_of_uavlab])
-def test_curvature_written_otherwise_is_right(answer):
-    assert check("12.1", answer)
 
 
 def across(first, second):
@@ -39,38 +23,10 @@ def level(vectors):
     return vectors * (1, 1, 0)
 
 
-@pytest.mark.parametrize(
-    ("answer", "hint"),
-    [
-        (lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1) ** (2 / 3), "wrong way up: it isn't 2/3"),
-        (lambda r1, r2: across(r1, r2) / np.linalg.norm(r1, axis=1) ** (2 / 3), "wrong way up: 2/3 of |r′|"),
-        (lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1), "divide by |r′|²"),
-        (lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1) ** 3, "already the second power"),
-        (lambda r1, r2: np.linalg.norm(r2, axis=1), "one metre per unit"),
-        (lambda r1, r2: np.linalg.norm(r2, axis=1) / (r1**2).sum(axis=1), "all of r″"),
-        (across, "numerator alone"),
-        (lambda r1, r2: by_gram(level(r1), level(r2)), "leave out the height"),
-        (lambda r1, r2: np.cross(r1, r2)[:, 2] / np.hypot(r1[:, 0], r1[:, 1]) ** 3, "a sign for left and right"),
-        (lambda r1, r2: np.abs((r1 * r2).sum(axis=1)) / np.linalg.norm(r1, axis=1) ** 3, "scalar product"),
-        (lambda r1, r2: 1 / by_gram(r1, r2), "That is the radius"),
-        (lambda r1, r2: np.linalg.norm(np.cross(r1, r2)) / np.linalg.norm(r1) ** 3, "a curvature for each point"),
-        (lambda r1, r2: 2 * by_gram(r1, r2), "Try it on a circle"),
-    ],
-)
-def test_mistakes_with_the_curvature(answer, hint):
-    verdict = check("12.1", answer)
-    assert not verdict
-    assert hint in verdict.hint
-
-
 def by_scipy(waypoints):
     """From SciPy's natural spline: at a knot the curve is r″/6 off its control point, and unbent at its ends."""
     knots = np.arange(len(waypoints))
     return waypoints - CubicSpline(knots, waypoints, bc_type="natural")(knots, 2) / 6
-
-
-def test_control_points_found_otherwise_are_right():
-    assert check("12.2", by_scipy)
 
 
 def equations(waypoints, *, sixth=6.0, ends="right"):
@@ -95,28 +51,6 @@ def doubled_in_place(waypoints):
     return waypoints
 
 
-@pytest.mark.parametrize(
-    ("answer", "hint"),
-    [
-        (lambda waypoints: waypoints.copy(), "the waypoints themselves"),
-        (smoothed, "the wrong way round"),
-        (lambda waypoints: 2 * waypoints - smoothed(waypoints), "found together"),
-        (lambda waypoints: equations(waypoints, ends="none"), "a neighbour outside is taken for 0"),
-        (lambda waypoints: equations(waypoints, ends="doubled"), "as its own neighbour"),
-        (lambda waypoints: equations(waypoints, sixth=1.0), "too near to the origin"),
-        (lambda waypoints: equations(waypoints, sixth=1.0, ends="none"), "add up to 6"),
-        (lambda waypoints: equations(waypoints, ends="twice"), "doesn't begin or end"),
-        (lambda waypoints: equations(waypoints) + 1.0, "passes the six waypoints"),
-        (lambda waypoints: equations(waypoints)[1:-1], "a control point for each waypoint"),
-        (doubled_in_place, "changes an array"),
-    ],
-)
-def test_mistakes_with_the_control_points(answer, hint):
-    verdict = check("12.2", answer)
-    assert not verdict
-    assert hint in verdict.hint
-
-
 def by_linear_program(distance, allowed, acceleration):
     """The greatest squares of speeds under all limits at once."""
     count = len(distance)
@@ -125,10 +59,6 @@ def by_linear_program(distance, allowed, acceleration):
     bounds = [(0, 0 if i in (0, count - 1) else v**2) for i, v in enumerate(allowed)]
     found = linprog(-np.ones(count), np.vstack([change, -change]), np.concatenate([gain, gain]), bounds=bounds)
     return np.sqrt(found.x)
-
-
-def test_speeds_found_by_a_linear_program_are_right():
-    assert check("12.3", by_linear_program)
 
 
 def drive(distance, allowed, acceleration, *, passes="both", factor=2.0, power=2, rest=True, start=True):
@@ -149,39 +79,122 @@ def drive(distance, allowed, acceleration, *, passes="both", factor=2.0, power=2
     return speed ** (1 / power)
 
 
-@pytest.mark.parametrize(
-    ("broken", "hint"),
-    [
-        ({"passes": "forward"}, "never brakes"),
-        ({"passes": "backward"}, "brakes in time, but"),
-        ({"passes": "none"}, "it jumps, where the UAV can't"),
-        ({"rest": False}, "begins and ends at rest"),
-        ({"start": False}, "begins and ends at rest"),
-        ({"factor": 1.0}, "half of what it may"),
-        ({"power": 1, "factor": 1.0}, "You add a·s to the speed"),
-        ({"power": 1}, "add 2as to the speed itself"),
-        ({"factor": 4.0}, "are allowed"),
-    ],
-)
-def test_mistakes_with_the_speeds(broken, hint):
-    verdict = check("12.3", lambda *question: drive(*question, **broken))
+def broken(**mistake):
+    return lambda *question: drive(*question, **mistake)
+
+
+def street_points(*between):
+    """Control points of 12.6 at the height of the street's ends."""
+    return np.array([chapter12.START, *((x, y, 10) for x, y in between), chapter12.GOAL], dtype=float)
+
+
+WIDE = street_points((30, 5.4), (50, 5.4), (66, 14), (74.6, 30), (74.6, 50))
+MISTAKES = {
+    "12.2": {
+        "wrong way up: it isn't 2/3": lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1) ** (2 / 3),
+        "wrong way up: 2/3 of |r′|": lambda r1, r2: across(r1, r2) / np.linalg.norm(r1, axis=1) ** (2 / 3),
+        "divide by |r′|²": lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1),
+        "already the second power": lambda r1, r2: across(r1, r2) / (r1**2).sum(axis=1) ** 3,
+        "one metre per unit": lambda r1, r2: np.linalg.norm(r2, axis=1),
+        "all of r″": lambda r1, r2: np.linalg.norm(r2, axis=1) / (r1**2).sum(axis=1),
+        "numerator alone": across,
+        "leave out the height": lambda r1, r2: by_gram(level(r1), level(r2)),
+        "a sign for left and right": lambda r1, r2: np.cross(r1, r2)[:, 2] / np.hypot(r1[:, 0], r1[:, 1]) ** 3,
+        "scalar product": lambda r1, r2: np.abs((r1 * r2).sum(axis=1)) / np.linalg.norm(r1, axis=1) ** 3,
+        "That is the radius": lambda r1, r2: 1 / by_gram(r1, r2),
+        "a curvature for each point": lambda r1, r2: np.linalg.norm(np.cross(r1, r2)) / np.linalg.norm(r1) ** 3,
+        "Try it on a circle": lambda r1, r2: 2 * by_gram(r1, r2),
+    },
+    "12.3": {
+        "the waypoints themselves": lambda waypoints: waypoints.copy(),
+        "the wrong way round": smoothed,
+        "found together": lambda waypoints: 2 * waypoints - smoothed(waypoints),
+        "a neighbour outside is taken for 0": lambda waypoints: equations(waypoints, ends="none"),
+        "as its own neighbour": lambda waypoints: equations(waypoints, ends="doubled"),
+        "too near to the origin": lambda waypoints: equations(waypoints, sixth=1.0),
+        "The weights 1, 4, 1 add up to 6": lambda waypoints: equations(waypoints, sixth=1.0, ends="none"),
+        "doesn't begin or end": lambda waypoints: equations(waypoints, ends="twice"),
+        "passes the six waypoints": lambda waypoints: equations(waypoints) + 1.0,
+        "a control point for each waypoint": lambda waypoints: equations(waypoints)[1:-1],
+        "changes an array": doubled_in_place,
+    },
+    "12.4": {
+        "never brakes": broken(passes="forward"),
+        "brakes in time, but": broken(passes="backward"),
+        "it jumps, where the UAV can't": broken(passes="none"),
+        "begins and ends at rest": broken(rest=False),
+        "half of what it may": broken(factor=1.0),
+        "You add a·s to the speed": broken(power=1, factor=1.0),
+        "add 2as to the speed itself": broken(power=1),
+        "are allowed": broken(factor=4.0),
+        "not as fast as possible": lambda *question: 0.9 * drive(*question),
+        "negative or not numbers": lambda *question: -drive(*question),
+        "a speed for each point": lambda *question: drive(*question)[1:],
+        " there.": lambda distance, allowed, a: drive(distance, 1.2 * allowed, a),
+    },
+    "12.5": {
+        "has drag in it": 112.4,
+        "of the tilt does the drag take": 92.6,
+        "how many radii": 47.7,
+        "for all limits": 39.7,
+        "cruise speed": 187.5,
+        "corner of 45°": 42.8,
+        "above 0": -135.0,
+        "shorter ones do, too": 150.0,
+        "can't be flown at 15 m/s": 120.0,
+    },
+    "12.6": {
+        "touches the inner wall": street_points((70, 10)),
+        "touches the outer wall": street_points((78, 2), (78, 20)),
+        "of a wall; keep 1 m": street_points((30, 5), (50, 5), (65, 15), (75, 30), (75, 50)),
+        "can be flown at": street_points((40, 5), (75, 5), (75, 40)),
+        "without a needless wave": WIDE + 4.0 * (np.arange(7) == 3)[:, None] * [0, 0, 1],
+        "12 are allowed": np.linspace(chapter12.START, chapter12.GOAL, 13),
+        "The first control point": WIDE[1:],
+        "The last control point": WIDE[:-1],
+        "not finite": WIDE * [1, 1, np.nan],
+        "an array of control points": WIDE[:, :2],
+    },
+}
+CASES = [(number, words) for number, mistakes in MISTAKES.items() for words in mistakes]
+
+
+@pytest.mark.parametrize(("number", "words"), CASES)
+def test_a_mistake_is_told_what_it_is(number, words):
+    verdict = check(number, MISTAKES[number][words])
     assert not verdict
-    assert hint in verdict.hint
+    assert words in verdict.hint
 
 
 @pytest.mark.parametrize(
-    ("answer", "hint"),
+    ("number", "answer"),
     [
-        (lambda *question: 0.9 * drive(*question), "not as fast as possible"),
-        (lambda *question: -drive(*question), "negative or not numbers"),
-        (lambda *question: drive(*question)[1:], "a speed for each point"),
-        (lambda distance, allowed, a: drive(distance, 1.2 * allowed, a), "m/s, "),
+        ("12.2", by_gram),
+        ("12.2", curvature_of_uavlab),
+        ("12.3", by_scipy),
+        ("12.4", by_linear_program),
+        ("12.5", 134.5),
+        ("12.5", np.float64(135.4)),
+        ("12.6", WIDE),
+        ("12.6", WIDE.tolist()),
     ],
 )
-def test_other_answers_for_the_speeds(answer, hint):
-    verdict = check("12.3", answer)
-    assert not verdict
-    assert hint in verdict.hint
+def test_answers_found_otherwise_are_right(number, answer):
+    assert check(number, answer)
+
+
+def test_a_uav_that_starts_in_flight_is_told_so():
+    assert "begins and ends at rest" in check("12.4", broken(start=False)).hint
+
+
+def test_the_legs_are_those_that_the_library_flies(solutions):
+    assert solutions["fastest"](chapter12.LEG) == pytest.approx(chapter12.FAST, abs=0.01)
+    assert solutions["fastest"](112.36) == pytest.approx(14.3, abs=0.05)
+
+
+def test_the_street_of_the_exercise_is_the_one_that_is_checked(solutions):
+    assert (solutions["street"].occupied == chapter12.street().occupied).all()
+    assert "5.8 m/s" in check("12.6", solutions["middle_line"].control).hint
 
 
 def test_solutions_answer_examples(solutions):

@@ -1,4 +1,4 @@
-"""Exercises of chapter 12, B-splines: curvature, a curve through its waypoints, and slowing down only where it bends.
+"""Exercises of chapter 12, B-splines: a limit without a unit, curvature, waypoints, braking, long legs, a wide swing.
 
 A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
 by how they are written.
@@ -6,22 +6,36 @@ by how they are written.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 
+from uavlab.city import City
 from uavlab.exercises.hints import alike, each_alike, recognised
-from uavlab.exercises.kinds import asks_for, numbers
-from uavlab.spline import cubic_bspline
+from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, number, numbers
+from uavlab.spline import Curve, cubic_bspline, feasibility, greatest_speed
+from uavlab.vehicle import RISK_QUADROTOR
 
 same = partial(each_alike, same=partial(alike, relative=1e-7, absolute=1e-9))
 
 
+exercise_1 = Quiz(
+    right="b",
+    because="0.8 per voxel of 10 m is 0.08 1/m, and 64 · 0.08 = 5.1 m/s². On voxels of 1 m it is ten times as much.",
+    wrong={
+        "a": "Both numbers are below 1, but 1 of what? Work out the radius of each planner's sharpest bend in metres.",
+        "c": "You take 0.8 per voxel for 0.8 1/m on both maps. On how many metres does B's curve turn?",
+        "d": "Smaller voxels don't make a bend gentler: the same turn happens on fewer metres. What is v²κ for A?",
+    },
+)
+
+
 @asks_for(numbers(lambda first, *_: first.shape[:1], "a curvature for each point"), unchanged=True)
-def exercise_1(curvature: Callable[..., Any]) -> str:
-    """12.1: the curvature of a curve in space, by any parameter."""
+def exercise_2(curvature: Callable[..., Any]) -> str:
+    """12.2: the curvature of a curve in three dimensions, by any parameter."""
     rng = np.random.default_rng(1110)
     questions = [tuple(rng.normal(0, size, (2, 6, 3))) for size in (0.5, 1.0, 3.0)]
     given = [np.asarray(curvature(*question), dtype=float) for question in questions]
@@ -77,7 +91,7 @@ CURVATURE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], s
     ),
     (
         lambda first, second: np.cross(first, second)[:, 2] / size(first[:, :2]) ** 3,
-        "That is the curvature of the ground plan, with a sign for left and right. This curve lies in space.",
+        "That is the curvature of the ground plan, with a sign for left and right. This curve also climbs.",
     ),
     (
         lambda first, second: np.abs((first * second).sum(axis=1)) / size(first) ** 3,
@@ -88,8 +102,8 @@ CURVATURE_MISTAKES: list[tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], s
 
 
 @asks_for(numbers(lambda waypoints: waypoints.shape, "a control point for each waypoint"), unchanged=True)
-def exercise_2(control_points: Callable[..., Any]) -> str:
-    """12.2: the control points of a B-spline with phantom ends that passes through waypoints."""
+def exercise_3(control_points: Callable[..., Any]) -> str:
+    """12.3: the control points of a B-spline with phantom ends that passes through waypoints."""
     rng = np.random.default_rng(1120)
     questions = [(rng.uniform(-20, 20, (count, axes)),) for count, axes in ((6, 3), (4, 3), (3, 2), (9, 2))]
     given = [np.asarray(control_points(*question), dtype=float) for question in questions]
@@ -128,7 +142,7 @@ def extrapolated(waypoints: np.ndarray) -> np.ndarray:
 CONTROL_MISTAKES: list[tuple[Callable[[np.ndarray], np.ndarray], str]] = [
     (
         lambda waypoints: waypoints,
-        "Those are the waypoints themselves: the curve passes them by, as in the notebook.",
+        "Those are the waypoints themselves: the curve passes them by, as in the chapter.",
     ),
     (
         lambda waypoints: cubic_bspline(waypoints, per_segment=1),
@@ -162,8 +176,8 @@ CONTROL_MISTAKES: list[tuple[Callable[[np.ndarray], np.ndarray], str]] = [
 
 
 @asks_for(numbers(lambda distance, *_: distance.shape, "a speed for each point"), unchanged=True)
-def exercise_3(speeds: Callable[..., Any]) -> str:
-    """12.3: the fastest speeds along a curve, from rest to rest, with limits on speed and acceleration."""
+def exercise_4(speeds: Callable[..., Any]) -> str:
+    """12.4: the fastest speeds along a curve, from rest to rest, with limits on speed and acceleration."""
     questions = [bends(seed) for seed in range(5)]
     given = [np.asarray(speeds(*question), dtype=float) for question in questions]
     if same(given, [driven(*question) for question in questions]):
@@ -180,9 +194,8 @@ def wrong_somewhere(given: list[np.ndarray], questions: list[tuple[Any, ...]]) -
             return "The UAV begins and ends at rest."
         over = np.flatnonzero(values > allowed + 1e-6)
         if len(over):
-            return (
-                f"At {distance[over[0]]:.1f} m your speed is {values[over[0]]:.2f} m/s, {allowed[over[0]]:.2f} allowed."
-            )
+            place, speed, most = (array[over[0]] for array in (distance, values, allowed))
+            return f"At {place:.1f} m your speed is {speed:.2f} m/s, but at most {most:.2f} there."
         rate = np.diff(values**2) / (2 * np.diff(distance))
         hard = np.flatnonzero(np.abs(rate) > acceleration * (1 + 1e-6))
         if len(hard):
@@ -254,3 +267,76 @@ SPEED_MISTAKES: list[tuple[Callable[..., np.ndarray], str]] = [
         "You add 2as to the speed itself. What is it that grows by 2as?",
     ),
 ]
+
+
+LEG, NEAR, FAST = 134.9, 0.7, 15.0
+"""Shortest legs of a right angle that RISK_QUADROTOR can fly at 15 m/s [m]."""
+
+
+@asks_for_value(number("the length of the legs [m]"))
+def exercise_5(leg: float) -> str:
+    """12.5: the shortest even legs of a right angle that can be flown at 15 m/s."""
+    value = float(leg)
+    if abs(value - LEG) <= NEAR:
+        return ""
+    for mistake, hint in LEG_MISTAKES:
+        if math.isclose(value, mistake, rel_tol=0.012):
+            return hint
+    if not value > 0:
+        return "A leg has a length above 0."
+    if value > LEG:
+        return f"With legs of {value:.1f} m the corner can be flown at 15 m/s. But shorter ones do, too."
+    return f"With legs of {value:.1f} m the corner can't be flown at 15 m/s: look at what `fastest` says."
+
+
+LEG_MISTAKES: list[tuple[float, str]] = [
+    (112.36, "That is where the bank reaches 30°. Which other limit has drag in it, and binds above 13 m/s?"),
+    (92.65, "That is the tilt of 35° without drag. At 15 m/s how much of the tilt does the drag take?"),
+    (47.7, "That is the radius of the bend. By Eq. 10 how many radii long is a leg of a right angle?"),
+    (39.7, "That is v²/(g tan 30°), a radius, and by the bank alone. The question is for legs, and for all limits."),
+    (187.5, "Those are the legs for 16 m/s, the UAV's cruise speed."),
+    (42.8, "Those are the legs of a corner of 45°. A right angle turns by twice as much."),
+]
+
+SWING, KEEP, MOST = 12.0, 1.0, 12
+START, GOAL = (2.0, 10.0, 10.0), (70.0, 78.0, 10.0)
+
+
+@cache
+def street() -> City:
+    """A street of 12 m that turns by a right angle."""
+    occupied = np.ones((80, 80, 20), dtype=bool)
+    occupied[:76, 4:16] = occupied[64:76, 4:] = False
+    return City(occupied, name="A street with a corner")
+
+
+@asks_for_value(numbers((None, 3), "an array of control points (N, 3)"))
+def exercise_6(control: np.ndarray) -> str:
+    """12.6: control points that take the corner of a street at 12 m/s."""
+    points = np.asarray(control, dtype=float)
+    if not np.isfinite(points).all():
+        return "Some of your coordinates are not finite."
+    if not 2 <= len(points) <= MOST:
+        return f"You have {len(points)} control points; 2 to {MOST} are allowed."
+    for end, wanted, name in ((points[0], START, "first"), (points[-1], GOAL, "last")):
+        if not np.allclose(end, wanted, atol=1e-6):
+            return f"The {name} control point has to be {wanted}, yours is {tuple(end.round(2).tolist())}."
+    curve = Curve(points)
+    report = feasibility(curve, street(), RISK_QUADROTOR, speed=SWING, min_clearance=KEEP)
+    if report.feasible:
+        return ""
+    x, y, _ = report["clearance"].place
+    if not report["clearance"].met:
+        if report["clearance"].worst == 0:
+            where = "the inner wall" if x < 70 and y > 10 else "the outer wall"
+            return f"Your curve touches {where}, near ({x:.0f}, {y:.0f}). Draw it over the street."
+        return f"Near ({x:.0f}, {y:.0f}) your curve comes within {report['clearance'].worst:.2f} m of a wall; keep 1 m."
+    speed = greatest_speed(curve, RISK_QUADROTOR)
+    if not report["curvature"].met:
+        x, y, _ = report["curvature"].place
+        return (
+            f"All walls are 1 m away, but your curve can be flown at {speed:.1f} m/s only. It is sharpest near "
+            f"({x:.0f}, {y:.0f}). Where is there room to begin the bend earlier, or to end it later?"
+        )
+    failing = ", ".join(limit.name for limit in report.limits if not limit.met)
+    return f"Walls and bank are kept, but not: {failing}. Is the curve level, and without a needless wave?"

@@ -1,8 +1,8 @@
 """Whether a UAV can fly a curve: each limit, the worst value and where it is.
 
 The papers call a curve flyable when its curvature is below 1 per coding unit and its pitch below π/3. But a curvature
-says nothing without a speed: on a circle of 5 m a UAV at 16 m/s needs five times its weight. What counts is the thrust
-that holds weight, wind and the turn together, and how far the UAV must tilt for it.
+says nothing without a speed: on a circle of 5 m a UAV at 16 m/s accelerates sideways with v²κ = 51 m/s², 5.2 g. What
+counts is the thrust that holds weight, wind and the turn together, and how far the UAV must tilt for it.
 """
 
 from __future__ import annotations
@@ -216,10 +216,10 @@ def feasibility(
     Returns
     -------
     Feasibility
-        "clearance", "map" (how far inside of it) and "height" above ground [m], "curvature" [1/m], "pitch" [°],
-        "thrust" [N] and "tilt" [°] that hold weight, wind and turn, "air speed" [m/s]; where they are limited also
-        "height at most", "height above roofs" and "distance to no-fly zones" [m], "heading change" [° per voxel],
-        "climb rate" and "sink rate" [m/s].
+        "clearance", "map" (how far inside of it) and "height" above ground [m], "curvature" (its level part, which the
+        bank limits) [1/m], "pitch" [°], "thrust" [N] and "tilt" [°] that hold weight, wind and turn, "air speed" [m/s];
+        where they are limited also "height at most", "height above roofs" and "distance to no-fly zones" [m], "heading
+        change" [° per voxel], "climb rate" and "sink rate" [m/s].
 
     Raises
     ------
