@@ -22,7 +22,7 @@ ANTENNA = 0.15
 
 
 PRINTED_BLOCK = 3
-"""m (PSO-BAS Table 3), which the paper doesn't explain: the beetle's dimension, that of a point in space."""
+"""m (PSO-BAS Table 3): the beetle's dimension, as its section 4.2 calls it; so that of one waypoint, not of all."""
 
 
 def pso_bas(
@@ -66,7 +66,7 @@ def pso_bas(
         Pairs of evaluations per particle and iteration, at least 1.
     block : int, optional
         Probe along so many neighbouring coordinates at a time, such as the 3 of one waypoint; all by default, as
-        printed 3, if they divide the coordinates: the beetle's m of PSO-BAS Table 3.
+        printed 3, if they divide the coordinates: the beetle's m of PSO-BAS 4.2 and Table 3.
     as_printed : bool
         ω = 1 and no limit of the step; one probe, in a direction from a cube; the beetle then walks to the better
         side, better or not (Eq. 19); η = 0.95. In place of the parameters concerned.
