@@ -115,12 +115,10 @@ def is_called(name: str, stem: str) -> bool:
 def page_of(notebook: Path) -> int:
     """Write the page of a project, and say what is missing in it."""
     try:
-        path, blank = handed_in(notebook)
+        path, missing = handed_in(notebook)
     except ValueError as problem:
         raise SystemExit(f"no page: {problem}") from None
-    print(path)
-    if blank:
-        print(f"not written yet: {', '.join(blank)}")
+    print(path, *missing, sep="\n")
     return 0
 
 

@@ -34,30 +34,36 @@ GUIDE = "guide"
 """Tag of cells that tell a student how to make a project; they aren't part of it."""
 FOLDED = {"check": "Code that checks", "figure": "Code of the figure", GUIDE: "Code that prepares"}
 """Tags of cells whose code is out of the reader's way, and what stands in its place."""
-ANSWER = re.compile(r"\s*\*\*(Answer \d+)\.\*\*\s*(?:…|\.\.\.)?\s*")
-"""An answer that isn't written yet."""
+QUESTION = re.compile(r"\*\*Question (\d+)\.")
+NO_ANSWER = re.compile(r"\banswer\s*\d*|\b(?:todo|tbd|xxx)\b|[\W_]", re.IGNORECASE)
+"""What is no answer yet: its heading, in whatever form, a note to oneself, and signs without a letter or digit."""
+PROJECT = Path(__file__).parent / "16_your_own_city.ipynb"
+OWN = re.compile(r"^TITLE, NAME = ", re.MULTILINE)
+"""In the one cell of code that is a student's own."""
 STYLE = """
 .uavlab-folded > summary { margin-left: 64px; color: var(--jp-ui-font-color2); cursor: pointer; font-size: 12px }
 .jp-InputArea-editor, .jp-OutputArea-output { overflow-x: auto }
 .jp-MarkdownOutput blockquote { border-left: 4px solid #0072b2; background: #0072b210; padding: 6px 12px }
 .jp-MarkdownOutput blockquote > :last-child { margin-bottom: 0 }
+.jp-RenderedHTMLCommon :is(td, th):first-child, .jp-RenderedHTMLCommon caption { text-align: left }
 """
 EQUATION = re.compile(r"<uavlab-(inline|display)>(.*?)</uavlab-\1>", re.DOTALL)
 
 
-def export(notebook: NotebookNode, name: str, folder: Path) -> Path:
+def export(notebook: NotebookNode, name: str, folder: Path, prompts: bool = True) -> Path:
     """Write a notebook with its live outputs as a page into a folder; `ValueError` names equations that aren't TeX."""
     folder.mkdir(parents=True, exist_ok=True)
-    page, _ = Exporter().from_notebook_node(described(notebook), {"metadata": {"name": name}})
+    exporter = Exporter(exclude_input_prompt=not prompts, exclude_output_prompt=not prompts)
+    page, _ = exporter.from_notebook_node(described(notebook), {"metadata": {"name": name}})
     path = folder / f"{name}.html"
     path.write_text(page, encoding="utf-8")
     return path
 
 
 def handed_in(path: Path) -> tuple[Path, list[str]]:
-    """Write a project as it was saved as a page beside it; the page, and the answers that are missing.
+    """Write a project as it was saved as a page beside it; the page, and what a teacher would miss in it.
 
-    Cells that explain are left out, and code is folded. `ValueError` says what isn't run.
+    Cells that explain or check are left out, and code is folded. `ValueError` says what isn't run.
     """
     if not path.is_file():
         raise ValueError(f"there is no file {path}")
@@ -73,12 +79,58 @@ def handed_in(path: Path) -> tuple[Path, list[str]]:
     outputs = [output.get("data", {}) for cell in code for output in cell.outputs]
     if any(str(data.get("text/plain", "")).startswith("<Scene") and "text/html" not in data for data in outputs):
         raise ValueError(f"the scene of {path.name} is a still picture yet: Restart Kernel and Run All Cells, save")
-    notebook.cells = [cell for cell in notebook.cells if GUIDE not in cell.metadata.get("tags", [])]
+    missing = [*unanswered(notebook), *changed(notebook)]
+    notebook.cells = [cell for cell in notebook.cells if not {GUIDE, "check"} & set(cell.metadata.get("tags", []))]
     for cell in notebook.cells:
         if cell.cell_type == "code" and not set(FOLDED) & set(cell.metadata.get("tags", [])):
             cell.metadata["tags"] = [*cell.metadata.get("tags", []), "code"]
-    blank = [found[1] for cell in notebook.cells if (found := ANSWER.fullmatch(cell.source))]
-    return export(notebook, path.stem, path.parent), blank
+    if missing:
+        words = "\n".join(f"- {html.escape(what)}" for what in missing)
+        notebook.cells.append(nbformat.v4.new_markdown_cell(f"**Not as the chapter asks**\n\n{words}"))
+    return export(notebook, path.stem, path.parent, prompts=False), missing
+
+
+def unanswered(notebook: NotebookNode) -> list[str]:
+    """Questions that no text follows, whatever became of the cell that was made for it."""
+    own = [cell for cell in notebook.cells if GUIDE not in cell.metadata.get("tags", [])]
+    asked = [(at, found[1]) for at, cell in enumerate(own) if (found := QUESTION.search(cell.source))]
+    blank = []
+    for at, number in asked:
+        text = []
+        for cell in own[at + 1 :]:
+            if cell.cell_type == "code" or QUESTION.search(cell.source) or cell.source.startswith("#"):
+                break
+            text.append(cell.source)
+        if not NO_ANSWER.sub("", " ".join(text)):
+            blank.append(f"not written yet: Answer {number}")
+    if not asked:
+        return []
+    known = [number for cell in read_project() for number in QUESTION.findall(cell.source)]
+    return blank + [f"Question {n} is gone" for n in known if n not in [number for _, number in asked]]
+
+
+def changed(notebook: NotebookNode) -> list[str]:
+    """How the code of a project differs from that of its chapter, but for the cell of the settings."""
+    if not any(QUESTION.search(cell.source) for cell in notebook.cells):
+        return []
+
+    def sources(cells: list[NotebookNode]) -> list[str]:
+        return [
+            c.source.strip() for c in cells if c.cell_type == "code" and c.source.strip() and not OWN.search(c.source)
+        ]
+
+    made, theirs = sources(read_project()), sources(notebook.cells)
+    other = [source for source in theirs if source not in made]
+    changed_heads, heads = ({source.splitlines()[0] for source in some} for some in (other, theirs))
+    gone = [source.splitlines()[0] for source in made if source.splitlines()[0] not in heads]
+    return [f"code that isn't the chapter's: {head}" for head in sorted(changed_heads)] + [
+        f"code of the chapter that is gone: {head}" for head in gone
+    ]
+
+
+def read_project() -> list[NotebookNode]:
+    """The cells of the project as the course gives it."""
+    return list(nbformat.read(PROJECT, as_version=4).cells)
 
 
 def described(notebook: NotebookNode) -> NotebookNode:
@@ -99,9 +151,9 @@ def described(notebook: NotebookNode) -> NotebookNode:
 class Exporter(HTMLExporter):
     """Jupyter's exporter of one page, with equations typeset in Markdown."""
 
-    def __init__(self) -> None:
+    def __init__(self, **settings: bool) -> None:
         self.equations = Equations()
-        super().__init__(raw_template=TEMPLATE, template_name="lab")
+        super().__init__(raw_template=TEMPLATE, template_name="lab", **settings)
         self.environment.globals |= {"equations": self.equations, "style": STYLE}
         self.environment.filters["folded"] = lambda tags: next(
             ((FOLDED | {"code": "Code"})[tag] for tag in tags or () if tag in FOLDED or tag == "code"), ""

@@ -233,6 +233,22 @@ def test_turning_by_hand_stays_when_the_window_changes(opened, city, flights):
     assert page.evaluate(place) == pytest.approx(turned, abs=1e-6)
 
 
+@pytest.mark.parametrize("camera", ["overview", "above", "side"])
+def test_no_drag_takes_the_camera_under_the_ground(opened, camera):
+    city = City(np.zeros((60, 40, 5), dtype=bool), 10.0)
+    page = opened(scene.page(city, Route([(50, 50, 5), (500, 300, 12)]), start_paused=True, camera=camera))
+    for _ in range(3):
+        page.mouse.move(400, 450)
+        page.mouse.down()
+        page.mouse.move(400, 100, steps=4)
+        page.mouse.up()
+        page.wait_for_timeout(300)
+    eye, target = page.evaluate("[viewer.camera.position.y, viewer.controls.target.y]")
+    assert eye == pytest.approx(target, abs=1)  # as low as it gets
+    ground = -50 / 2  # the middle of the map is 0
+    assert eye > ground
+
+
 def test_turning_by_keys_ends_following(opened, city, flights):
     page = opened(scene.page(city, flights=flights, start_paused=True, camera="chase"))
     page.locator("#pane").focus()

@@ -147,6 +147,18 @@ def test_feet_are_feet(geojson, text, metres):
     assert read_geojson(geojson(feature(SQUARE, height=text))).buildings[0].bounds[1, 2] == pytest.approx(metres)
 
 
+def test_what_is_not_finished_or_in_ruins_is_taken_as_it_is_and_said(geojson):
+    town = geojson(
+        feature(SQUARE, building="construction", **{"building:levels": "7"}),
+        feature(SQUARE, building="ruins", height="4"),
+        feature(SQUARE, building="yes", height="4"),
+    )
+    with pytest.warns(UserWarning, match="1 × finished building, though building=construction"):
+        city = read_geojson(town)
+    assert city.buildings[0].bounds[1, 2] == 21
+    assert city.source.count("assumed", "finished building") == 2
+
+
 STOREYS = [
     ({"building:levels": "38"}, 0, 114),
     ({"building:levels": 3, "roof:levels": 2}, 0, 15),

@@ -117,6 +117,12 @@ def test_broken_json_names_the_place(tmp_path, text, told):
         read_city(write(tmp_path / "broken.json", text))
 
 
+def test_overpass_own_json_is_named_with_the_cure(tmp_path):
+    text = '{"version": 0.6, "generator": "Overpass API", "elements": [{"type": "way", "id": 1, "nodes": []}]}'
+    with pytest.raises(ValueError, match=r"raw\.json is Overpass' own JSON.*choose Export, GeoJSON"):
+        read_city(write(tmp_path / "raw.json", text))
+
+
 def test_other_encodings_and_other_json_are_refused(tmp_path):
     path = write(tmp_path / "a.json", '{"name": "Straße"}', encoding="latin-1")
     with pytest.raises(ValueError, match=r"a\.json is not UTF-8 text: .* at byte 14"):

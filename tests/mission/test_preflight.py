@@ -1,6 +1,7 @@
 """Each check of the preflight holds when it should and fails when it should, by values that are found another way."""
 
 import math
+import re
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
@@ -244,6 +245,28 @@ def test_home_beside_a_wall_or_under_a_roof_isnt_free_to_rise():
     through = checked(by_hand((70, 70, 40), (10, 70, 40)), city)["home"]
     assert not through.met  # what is below the start is the roof, not the ground on which it is said to stand
     assert checked(by_hand((70, 70, 20), (70, 50, 20), (10, 50, 40)), city)["home"].met  # below it there is room
+
+
+def test_the_ground_below_home_is_no_wall_and_rising_ground_is_told_from_walls():
+    wall = Building.prism([(60, 10), (70, 10), (70, 20), (60, 20)], 30.0)
+    level = {"origin": (0, 0, -8), "size": (100, 100, 60), "reference": DELFT}
+    mission = by_hand((20, 15, 40), (20, 50, 40))
+    for cell in (2.0, 4.0):
+        flat = City.from_buildings([wall], cell=cell, terrain=0.0, **level)
+        home = checked(mission, flat)["home"]
+        assert home.value == pytest.approx(40.0, abs=CENTIMETRE)  # not the cell
+        assert home.words == "to walls on the way up to 40.0 m"
+    slope = Terrain([(0, 0, -6), (100, 0, 24), (100, 100, 24), (0, 100, -6)], [(0, 1, 2), (0, 2, 3)])
+    hill = City.from_buildings([wall], cell=2.0, terrain=slope, **level)
+    home = checked(by_hand((20, 15, 30), (20, 50, 30), city=hill), hill)["home"]
+    assert home.value < 7
+    assert re.match(r"to rising ground, (3\d|40)(\.\d)? m to walls, on the way up", home.words)
+    empty = City(np.zeros((50, 50, 30), dtype=bool), 2.0, reference=DELFT)
+    found = checked(mission, empty)
+    assert found["home"].value == math.inf
+    assert found["home"].met
+    assert "nothing on the map is higher" in found["home"].words
+    assert next(row for row in found.rows() if row[0] == "home")[1] == "none"
 
 
 def test_a_mission_that_stays_in_the_air_has_no_landing():

@@ -150,9 +150,11 @@ def test_each_answer_follows_its_question_and_isn_t_part_of_the_guide():
 def test_the_rubric_has_a_hundred_points():
     rubric = re.search(r"^## How it is marked$(.*?)^## ", text(), re.MULTILINE | re.DOTALL)[1]
     rows = [line.strip("|").split("|") for line in rubric.splitlines() if line.startswith("|")][2:]
-    assert 6 <= len(rows) <= 8
+    assert 8 <= len(rows) <= 10
     assert {len(row) for row in rows} == {5}
-    assert sum(int(row[-1]) for row in rows) == 100
+    *rows, total = rows
+    assert sum(int(row[-1]) for row in rows) == int(total[-1].strip(" *")) == 100
+    assert "Half the points of a row are for each half." in text()
 
 
 CITYJSON = {"type": "CityJSON", "version": "1.1", "transform": {"scale": [0.001] * 3, "translate": [0.0] * 3}}
@@ -187,7 +189,7 @@ def test_it_runs_on_a_city_model_without_a_place_without_people_and_terrain(tmp_
     city_model(tmp_path / "model.city.json", (0, 0), None)
     notebook = with_settings(
         CITY='"model.city.json"', READING='{"crs": "local"}', ROADS="None", PEOPLE="None", TERRAIN="None",
-        START__GOAL="(-8, 45, 0), (165, 50, 18)", CHOICE='"shortest"', TITLE__NAME='"No place", "Bo"',
+        START__GOAL="(-8, 45, 0), (165, 50, 18)", DETOUR__CHOICE='0.2, "shortest"', TITLE__NAME='"No place", "Bo"',
     )  # fmt: skip
     said = printed(run(notebook, tmp_path))
     assert "This city has no place on Earth: START and GOAL are in metres." in said
@@ -219,6 +221,7 @@ def test_it_runs_on_an_export_with_missing_heights_and_makes_the_page(export, tm
     monkeypatch.setattr(sys, "argv", ["build.py", "--page", str(saved)])
     assert build.main() == 0
     assert capsys.readouterr().out.splitlines() == [str(tmp_path / "my_city.html"), "not written yet: Answer 9"]
+    assert "Not as the chapter asks" in (tmp_path / "my_city.html").read_text(encoding="utf-8")
     markup = (tmp_path / "my_city.html").read_text(encoding="utf-8")
     page = BeautifulSoup(markup, "html.parser")
     seen = page.get_text()
@@ -267,3 +270,91 @@ def test_a_page_of_what_was_not_run_is_refused(tmp_path, monkeypatch, change, wo
         exported.handed_in(path)
     with pytest.raises(ValueError, match="there is no file"):
         exported.handed_in(tmp_path / "other.ipynb")
+
+
+@pytest.mark.parametrize(
+    ("answer", "written"),
+    [
+        ("**Answer 5.** …", False), ("**Answer 5.**", False), ("Answer 5: ...", False), ("TODO", False), ("", False),
+        ("**Answer 5.** TODO: write", True), ("**Answer 5.** 12 % longer.", True), ("The second avoids", True),
+        (None, False), ("## Answer", False),
+    ],
+)  # fmt: skip
+def test_answers_that_are_missing_are_found_in_any_form(monkeypatch, answer, written):
+    monkeypatch.syspath_prepend(NOTEBOOKS)
+    exported = importlib.import_module("exported")
+    notebook = jupytext.read(SOURCE)
+    for cell in notebook.cells:
+        cell.source = cell.source.replace("** …", "** It is so.") if cell.source.startswith("**Answer") else cell.source
+    at = next(n for n, cell in enumerate(notebook.cells) if cell.source.startswith("**Answer 5"))
+    if answer is None:
+        del notebook.cells[at]
+    else:
+        notebook.cells[at].source = answer
+    assert exported.unanswered(notebook) == ([] if written else ["not written yet: Answer 5"])
+
+
+def test_other_code_than_the_chapter_s_is_listed_but_not_other_settings(monkeypatch):
+    monkeypatch.syspath_prepend(NOTEBOOKS)
+    exported = importlib.import_module("exported")
+    monkeypatch.setattr(exported, "read_project", lambda: jupytext.read(SOURCE).cells)
+    notebook = with_settings(
+        CELL__MIN_HEIGHT__MAX_HEIGHT="5.0, 20.0, 100.0", GPS_SIGMAS="0.0", DETOUR__CHOICE='0.1, "shortest"'
+    )
+    assert exported.changed(notebook) == []
+    cell = next(cell for cell in notebook.cells if "monte_carlo(curve" in cell.source)
+    cell.source = cell.source.replace("rng=1", "rng=2")
+    gone = next(n for n, cell in enumerate(notebook.cells) if cell.source.startswith("wind = "))
+    del notebook.cells[gone]
+    assert exported.changed(notebook) == [
+        "code that isn't the chapter's: flights = {",
+        "code of the chapter that is gone: wind = Wind.from_weather(WEATHER)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"CITY": '"my_city/buildngs.geojson"'}, r"CITY = 'my_city/buildngs.geojson': there is no such file"),
+        ({"DETOUR__CHOICE": '0.2, "Least risk"'}, "CHOICE = 'Least risk' must be"),
+        ({"START__GOAL": "(11.00011, 50.00101), (11.0043, 50.00105, 25)"}, r"START = .* must be three numbers"),
+        ({"START__GOAL": "(50.00101, 11.00011, 9), (11.0043, 50.00105, 25)"},
+         "START = .* off the map.*longitude comes first"),
+        ({"START__GOAL": "(11.0037, 50.0016, 25), (11.0043, 50.00105, 25)"},
+         r"look at START.*lies in building.*m is \(11\.00\d+, 50\.00\d+, \d+\.\d\) as a setting"),
+        ({"TERRAIN": '"no_system.asc"'}, r"TERRAIN_CRS: no_system.asc has no \.prj beside it"),
+        ({"TERRAIN": '"no_system.asc"', "TERRAIN_CRS": '"EPSG:4326"'}, "look at CITY, READING, TERRAIN, TERRAIN_CRS: "),
+        ({"CITY": '"raw.json"'}, "look at CITY.*raw.json is Overpass' own JSON"),
+        ({"PEOPLE": '"no_system.asc"'}, "look at PEOPLE.*no_system.asc"),
+    ],
+)  # fmt: skip
+def test_errors_name_the_settings_to_look_at(tmp_path, monkeypatch, settings, words):
+    monkeypatch.chdir(tmp_path)
+    Path("raw.json").write_text('{"version": 0.6, "elements": []}')
+    Path("no_system.asc").write_text("ncols 2\nnrows 2\nxllcorner 8\nyllcorner 40\ncellsize 0.1\n1 2\n3 4")
+    names = {}
+    with pytest.raises(ValueError, match=words):  # noqa: PT012
+        for cell in with_settings(**settings).cells:
+            tags = cell.metadata.get("tags", [])
+            if cell.cell_type == "code" and "figure" not in tags and not cell.source.startswith("wind = "):
+                exec(compile(cell.source, "cell", "exec"), names)
+
+
+def test_a_record_of_pvgis_is_read_as_it_is(tmp_path):
+    cell = next(cell for cell in cells() if "def wind_record" in cell.source)
+    names = {}
+    exec(
+        "from contextlib import contextmanager\nfrom pathlib import Path\nfrom uavlab.weather import read_weather",
+        names,
+    )
+    exec(cell.source, names)
+    rows = ["Latitude (decimal degrees): 44.488", "month,year", "1,2010", "", "time(UTC),T2m,RH,WS10m,WD10m,SP"]
+    rows += [f"20100101:0{hour}00,5.2,80,{2 + hour},200,1e5" for hour in range(3)] + [
+        "",
+        "T2m: 2-m air temperature (°C)",
+    ]
+    path = tmp_path / "tmy.csv"
+    path.write_text("\n".join(rows), encoding="utf-8")
+    assert names["wind_record"](path).columns["wind_speed"].tolist() == [2.0, 3.0, 4.0]
+    path.write_text("wind speed [m/s]\n4.5\n")
+    assert names["wind_record"](path).columns["wind_speed"].tolist() == [4.5]

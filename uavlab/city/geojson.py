@@ -56,6 +56,9 @@ ABOVE = ("auto", "ground", "sea")
 MOST_NAMES = 40
 """Of properties in a message."""
 
+UNFINISHED = ("construction", "ruins", "collapsed", "proposed", "demolished")
+"""Values of OpenStreetMap's `building` of what doesn't stand, or not yet, or not any more, at its full height."""
+
 OSM_BASE = "min_height"
 """OpenStreetMap's key of an underside, which is always above ground."""
 
@@ -171,7 +174,7 @@ def read_geojson(
     factor = metres_per(height_unit) if height_unit is not None else 1.0 if system is None else system.height_factor
     note_system(notes, system, crs, declared, height_unit)
     wording = wording._replace(unit=factor, height=spelled(height, footprints, notes))
-    blocks = blocks_of(footprints, wording, path)
+    blocks = blocks_of(footprints, wording, path, notes)
     others = len(footprints) - len(blocks)
     place, blocks = placed(blocks, system)
     check_size(blocks, system)
@@ -273,7 +276,7 @@ def note_ground(notes: Notes, from_sea: bool, terrain: Any) -> None:
         notes.add("derived", "level ground at z = 0", count=0)
 
 
-def blocks_of(footprints: Sequence[Footprint], wording: Wording, path: Path) -> list[Block]:
+def blocks_of(footprints: Sequence[Footprint], wording: Wording, path: Path, notes: Notes) -> list[Block]:
     """Buildings and their parts in the coordinates of the file, with what it says about their heights."""
     heights = [heights_of(footprint.properties, wording) for footprint in footprints]
     kinds = kinds_of(footprints, [stated.own for stated in heights])
@@ -282,6 +285,10 @@ def blocks_of(footprints: Sequence[Footprint], wording: Wording, path: Path) -> 
         for footprint, kind, stated in zip(footprints, kinds, heights, strict=True)
         if kind != OTHER
     ]
+    for block in blocks:
+        state = str(block.footprint.properties.get("building"))
+        if state in UNFINISHED:
+            notes.add("assumed", f"finished building, though building={state}", block.label)
     if not blocks:
         raise ValueError(
             f"{path.name} has no building: none of its {len(kinds)} polygons has a height, or is tagged as one"

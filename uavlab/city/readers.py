@@ -74,11 +74,17 @@ def read_city(path: str | Path, **options: Any) -> City:
         return read_voxels(path, **fitting(read_voxels, options, "a voxel map"))
     if start.startswith(b"{") or path.suffix.lower() in {".json", ".jsonl", ".geojson"}:
         kind = KIND.search(start)  # not by parsing, which takes long for a large file
-        found = kind[1].decode() if kind else read_json(path)[0].get("type")
+        head = {} if kind else read_json(path)[0]
+        found = kind[1].decode() if kind else head.get("type")
         if found == "CityJSON":
             return read_cityjson(path, **fitting(read_cityjson, options, "CityJSON"))
         if found in GEOJSON:
             return read_geojson(path, **fitting(read_geojson, options, "GeoJSON"))
+        if isinstance(head.get("elements"), list):
+            raise ValueError(
+                f"{path.name} is Overpass' own JSON, which isn't GeoJSON: in Overpass turbo choose Export, GeoJSON, or "
+                "convert it with osmtogeojson"
+            )
     raise ValueError(
         f"{path.name} is not a city that can be read. Known are GeoJSON (.geojson, .json: footprints with heights), "
         f"CityJSON (.city.json, .json, .jsonl: models with roofs) and voxel maps (.3dmap){advice_on(path)}"

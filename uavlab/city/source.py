@@ -161,8 +161,9 @@ class Source:
     __repr__ = __str__
 
     def _repr_html_(self) -> str:
+        left = ' style="text-align:left"'
         rows = "".join(
-            f"<tr><td>{entry.kind}</td><td>{html.escape(str(entry).split(': ', 1)[1])}</td></tr>"
+            f"<tr><td{left}>{entry.kind}</td><td{left}>{html.escape(str(entry).split(': ', 1)[1])}</td></tr>"
             for entry in self.entries
         )
         return f"<table><caption>{html.escape(self.name)} ({self.format})</caption>{rows}</table>"

@@ -208,6 +208,24 @@ def touchable(city: City, point: np.ndarray, diameter: float) -> float:
     return floor_below(city, point)[1] + max(diameter, city.cell)
 
 
+def room_in_column(city: City, point: np.ndarray, diameter: float) -> tuple[float, str]:
+    """Least distance between a column of air, but for its last bit, and what is higher than its floor [m]; to what."""
+    floor, high = floor_below(city, point)[1], point[2]
+    low = min(touchable(city, point, diameter), high)
+    aside = [np.maximum(np.abs(point[axis] - city.coordinates(axis)) - city.cell / 2, 0.0) for axis in (0, 1)]
+    bottom = city.origin[2] + city.cell * np.arange(city.shape[2])
+    above = np.maximum(np.maximum(bottom - high, low - bottom - city.cell), 0.0)
+    apart = np.sqrt(aside[0][:, None, None] ** 2 + aside[1][:, None] ** 2 + above**2)
+    higher = city.occupied & (bottom > floor - city.cell / 2)
+    room = float(apart[higher].min(initial=np.inf))
+    if np.isinf(room):
+        return room, "nothing on the map is higher than what lies below,"
+    built = (city.occupied & (bottom >= city.range_of_ground[1][..., None])).any(axis=2)
+    walls = float(apart[higher & built[..., None]].min(initial=np.inf))
+    rising = f"to rising ground, {'no wall on the map' if np.isinf(walls) else f'{walls:.3g} m to walls'},"
+    return room, "to walls" if walls <= room else rising
+
+
 def check_column(city: City, name: str, point: np.ndarray, diameter: float) -> float:
     """Height z of what lies below a point, from where a UAV can rise to it without touching a wall [m].
 

@@ -18,7 +18,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.flight.autopilot import GPS, Gps
 from uavlab.flight.simulation import MOST_FLIGHTS
-from uavlab.mission.corridor import above_ground, extremes, floor_below, touchable, zone_on_way
+from uavlab.mission.corridor import above_ground, extremes, floor_below, room_in_column, zone_on_way
 from uavlab.mission.fences import polygon_on
 from uavlab.mission.making import Site, height_to_return
 from uavlab.mission.model import CEILING, Mission
@@ -164,7 +164,7 @@ class Preflight:
         return [
             (
                 check.name,
-                shown(check.value, check.unit),
+                "none" if check.at_least and np.isinf(check.value) else shown(check.value, check.unit),
                 f"{'>=' if check.at_least else '<='} {shown(check.limit, check.unit)}",
                 "yes" if check.met else "NO",
                 check.words,
@@ -187,9 +187,10 @@ class Preflight:
 
     def _repr_html_(self) -> str:
         signs = str.maketrans({">": "≥", "<": "≤", "=": ""})  # which not every terminal can print
-        heads = "".join(f"<th>{head}</th>" for head in HEADS)
+        left = ' style="text-align:left"'  # numbers with units and words: read from the left
+        heads = "".join(f"<th{left}>{head}</th>" for head in HEADS)
         cells = [map(html.escape, (*row[:2], row[2].translate(signs), *row[3:])) for row in self.rows()]
-        rows = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in cells)
+        rows = "".join("<tr>" + "".join(f"<td{left}>{cell}</td>" for cell in row) + "</tr>" for row in cells)
         return f"<table><caption>{html.escape(self.verdict)}</caption><tr>{heads}</tr>{rows}</table>"
 
 
@@ -248,14 +249,15 @@ def preflight(
     Returns
     -------
     Preflight
-        "home" and "landing": room on the way up and down [m]. "map": how far inside of it [m]. "clearance" to obstacles
-        and "no-fly zones": distance [m]. "least height" and "greatest height" above ground, that of the return with it
-        [m]. "return height" above home at which the straight way home is clear [m]. "fence": how far inside of it [m].
-        "speed" that is asked for, "ground speed" of the slowest leg as it is flown, in climb, descent and mean wind
-        [m/s]. "lift", "mean wind" and "gusts" with the limits of `uavlab.weather.grounded_by` [N, m/s]. "energy" that
-        19 of 20 flights don't exceed [Wh], an upper bound that holds with a confidence of 95 %, whatever their
-        distribution: of the n flights that arrived the r-th, with the least r for which at most r − 1 of n are below
-        the quantile with a probability of 95 %. "flights" that crashed or gave up.
+        "home" and "landing": room on the way up and down to what is higher than the ground or roof there [m]. "map":
+        how far inside of it [m]. "clearance" to obstacles and "no-fly zones": distance [m]. "least height" and
+        "greatest height" above ground, that of the return with it [m]. "return height" above home at which the straight
+        way home is clear [m]. "fence": how far inside of it [m]. "speed" that is asked for, "ground speed" of the
+        slowest leg as it is flown, in climb, descent and mean wind [m/s]. "lift", "mean wind" and "gusts" with the
+        limits of `uavlab.weather.grounded_by` [N, m/s]. "energy" that 19 of 20 flights don't exceed [Wh], an upper
+        bound that holds with a confidence of 95 %, whatever their distribution: of the n flights that arrived the r-th,
+        with the least r for which at most r − 1 of n are below the quantile with a probability of 95 %. "flights" that
+        crashed or gave up.
 
     Raises
     ------
@@ -330,7 +332,8 @@ def check_home(way: MissionWay, uav: UAV) -> Check:
     """Whether home is where something stands, and it can rise."""
     home, begin = way.stops[0].point, way.begin
     off = float(home[2] - floor_below(way.city, begin)[0])
-    room, words = room_in_column(way, begin, uav), f"to walls on the way up to {begin[2] - home[2]:.1f} m"
+    room, beside = room_in_column(way.city, begin, uav.diameter)
+    words = f"{beside} on the way up to {begin[2] - home[2]:.1f} m"
     if room_inside(way.city, home[None, :2]) < -ROUNDED:
         room, words = -np.inf, "home is off the map: take off on it, or read the city with a larger margin"
     elif not way.takes_off:
@@ -343,15 +346,9 @@ def check_home(way: MissionWay, uav: UAV) -> Check:
 
 def check_landing(way: MissionWay, uav: UAV) -> list[Check]:
     """Whether it can sink to where it lands; nothing of a mission that stays in the air."""
-    words = f"to walls on the way down from {checks.show(way.end)}"
-    room = room_in_column(way, way.end, uav)
+    room, beside = room_in_column(way.city, way.end, uav.diameter)
+    words = f"{beside} on the way down from {checks.show(way.end)}"
     return [Check("landing", room, (1 - CONTACT) * uav.diameter / 2, "m", True, words)] * way.lands
-
-
-def room_in_column(way: MissionWay, point: np.ndarray, uav: UAV) -> float:
-    """Least distance to obstacles between a point and what lies below it, but for the last bit [m]."""
-    low = np.array([*point[:2], min(touchable(way.city, point, uav.diameter), point[2])])
-    return float(way.city.segment_distance(low, point))
 
 
 def check_map(way: MissionWay) -> Check:

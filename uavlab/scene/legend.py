@@ -25,6 +25,10 @@ SIGNS = {
 """In a box of 18 by 14."""
 
 
+MOST_TICKS = 6
+"""On a colour bar, whose labels would overprint each other."""
+
+
 def legend(drawing: Drawing) -> str:
     """The legend as a list, and the notes below it."""
     lines = [f"<li>{sign(entry)}<span>{html.escape(entry.text)}</span></li>" for entry in drawing.legend]
@@ -66,9 +70,10 @@ def bar(low: str, high: str, label: str) -> str:
 
 
 def risk_bar(norm: LogNorm) -> str:
-    """The scale of risk with a tick at each power of ten."""
+    """The scale of risk with a tick at each power of ten, or at every second or third where they are many."""
     low, high = np.log10([norm.vmin or 1.0, norm.vmax or 1.0])
-    powers = np.arange(np.ceil(low - 1e-9), np.floor(high + 1e-9) + 1)
+    first, last = np.ceil(low - 1e-9), np.floor(high + 1e-9)
+    powers = np.arange(first, last + 1, max(1, np.ceil((last - first + 1) / MOST_TICKS)))
     ticks = "".join(
         f'<span style="left:{100 * float(norm(10.0**power)):.1f}%">10<sup>{power:.0f}</sup></span>' for power in powers
     )

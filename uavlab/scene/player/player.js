@@ -38,7 +38,7 @@ function playScene(commands, arrays, scene) {
 
   // --- cameras ---
   const camera = viewer.camera, controls = viewer.controls, corners = scene.corners;
-  controls.maxPolarAngle = (scene.camera[1] < 0 ? 1 : 0.52) * Math.PI;  // not below the ground unless asked for
+  controls.maxPolarAngle = (scene.camera[1] < 0 ? 1 : 0.5) * Math.PI;  // not below the ground unless asked for
   let following = null;  // the number of the UAV that the camera follows
 
   function axesOf(azimuth, elevation) {
@@ -62,8 +62,10 @@ function playScene(commands, arrays, scene) {
       distance = Math.max(distance, (high + low) / (2 * t));
     }
     const place = [across, upward].map(places => middleOf(places.map((a, i) => [a, distance + middle - toward[i]])));
-    const target = sum([place[0], axes[0]], [place[1], axes[1]], [middle, axes[2]]);
-    look(sum([1, target], [distance, axes[2]]), target);
+    const target = sum([place[0], axes[0]], [place[1], axes[1]], [middle, axes[2]]), eye = sum([1, target], [distance, axes[2]]);
+    const floor = Math.min(...corners.map(corner => corner[2])) + distance / 100;
+    const nearer = elevation > 0 ? Math.max(0, Math.min((floor - target[2]) / axes[2][2], distance / 2)) : 0;
+    look(eye, sum([1, target], [nearer, axes[2]]));  // turned about a point above the ground, the eye stays above it
   }
   function middleOf(points) {  // across and depth of each: from where they reach equally far to both sides
     let low = Math.min(...points.map(p => p[0])), high = Math.max(...points.map(p => p[0]));
