@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from uavlab.exercises.asked import BUDGET, Asked, holes, valley
 from uavlab.exercises.hints import alike, recognised
 from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, number, numbers
 from uavlab.optimizers import pso
 
 Step = tuple[np.ndarray, np.ndarray]
-Function = Callable[[np.ndarray], float]
 Search = Callable[..., np.ndarray]
 
 same = partial(alike, relative=1e-9)
@@ -72,12 +72,7 @@ def waves(point: np.ndarray) -> float:
 
 
 def walked(
-    f: Function,
-    x: np.ndarray,
-    b: np.ndarray,
-    reach: float,
-    step: float,
-    *,
+    *question: Any,
     uphill: bool = False,
     unit: bool = True,
     half: float = 1.0,
@@ -87,6 +82,7 @@ def walked(
     greedy: bool = False,
 ) -> np.ndarray:
     """A step by rules that may be wrong."""
+    f, x, b, reach, step = question
     along = b / np.linalg.norm(b) if unit else b
     left = f(x + half * reach * along)
     right = f(x) if one_side else f(x - half * reach * along)
@@ -157,17 +153,7 @@ def swarm_question(seed: int) -> tuple[Any, ...]:
 
 
 def flown(
-    x: np.ndarray,
-    v: np.ndarray,
-    best: np.ndarray,
-    leader: np.ndarray,
-    inertia: float,
-    r1: np.ndarray,
-    r2: np.ndarray,
-    v_max: float,
-    low: float,
-    high: float,
-    *,
+    *question: Any,
     c1: float = 1.5,
     c2: float = 2.0,
     sign: float = 1.0,
@@ -176,6 +162,7 @@ def flown(
     with_old: bool = False,
 ) -> Step:
     """One step by rules that may be wrong."""
+    x, v, best, leader, inertia, r1, r2, v_max, low, high = question
     new = inertia * v + sign * (c1 * r1 * (best - x) + c2 * r2 * (leader - x))
     limited = {
         "both": np.clip(new, -v_max, v_max),
@@ -343,15 +330,7 @@ CLAIM_MISTAKES: list[tuple[float, float, str]] = [
     (CHEATED - 0.14, 0.02, "That is the worst of the five seeds. Take their median."),
 ]  # fmt: skip
 
-BUDGET, LESS_IN_VALLEY, MORE_IN_HOLES = 4000, 0.7, 2.0
-
-
-def valley(x: np.ndarray) -> np.ndarray:
-    return (100 * (x[:, 1:] - x[:, :-1] ** 2) ** 2 + (1 - x[:, :-1]) ** 2).sum(axis=1)
-
-
-def holes(x: np.ndarray) -> np.ndarray:
-    return (10 + x**2 - 10 * np.cos(2 * np.pi * x)).sum(axis=1)
+LESS_IN_VALLEY, MORE_IN_HOLES = 0.7, 2.0
 
 
 @asks_for(numbers((6,), "the best point, with six coordinates"))
@@ -374,37 +353,6 @@ def exercise_6(search: Search) -> str:
             swarm.append(pso(asked.value, asked.box, BUDGET, seed).value)
         medians.append((float(np.median(found)), float(np.median(swarm))))
     return judged(*medians)
-
-
-class Asked:
-    """A function with its least value elsewhere, that remembers what it was asked."""
-
-    def __init__(self, f: Callable[[np.ndarray], np.ndarray], half: float, shift: np.ndarray) -> None:
-        self.f, self.shift, self.box = f, shift, np.array([[-half, half]] * 6)
-        self.made, self.least, self.outside = 0, np.inf, 0
-
-    def value(self, x: np.ndarray) -> np.ndarray:
-        return self.f(x - self.shift)
-
-    def __call__(self, x: Any) -> np.ndarray:
-        x = np.array(x, dtype=float)
-        if x.ndim != 2 or x.shape[1] != 6:
-            raise ValueError(f"f takes points of shape (N, 6), and got an array of shape {x.shape}")
-        self.made += len(x)
-        self.outside += int(((x < self.box[:, 0] - 1e-9) | (x > self.box[:, 1] + 1e-9)).any(axis=1).sum())
-        values = self.value(x)
-        self.least = min(self.least, float(values.min(initial=np.inf)))
-        return values
-
-    def complaint(self) -> str:
-        """What is wrong with the questions, if anything."""
-        if self.made == 0:
-            return "Your optimiser never asks f. The least value lies elsewhere in each of our questions."
-        if self.made > BUDGET:
-            return f"Your optimiser evaluates {self.made} points, and the budget is {BUDGET}. Count them."
-        if self.outside:
-            return f"{self.outside} of the points that you evaluate lie outside of the box."
-        return ""
 
 
 def judged(in_valley: tuple[float, float], in_holes: tuple[float, float]) -> str:
