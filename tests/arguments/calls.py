@@ -473,8 +473,8 @@ CALLS = {
     "planners.Comparison.converged": lambda: {"self": COMPARISON, "within": 0.5},
     "planners.ant_colony": lambda: risked(
         rng=1, budget=40, ants=10, alpha=1.0, beta=12.0, gamma=2.0, evaporation=0.125, deposit=1.5,
-        min_pheromone=0.0625, initial_pheromone=15.0, max_pheromone=16.0, height_guided=True, splits=1, demand=0.5,
-        record=False, as_printed=False, **weighed(),
+        min_pheromone=0.0625, initial_pheromone=15.0, max_pheromone=16.0, height_guided=True, all_lay=False,
+        splits=1, demand=0.5, record=False, as_printed=False, **weighed(),
     ),
     "planners.astar": lambda: planned(
         price=PRICES, heuristic="octile", min_clearance=0.5, as_printed=False, record=False, **heights()

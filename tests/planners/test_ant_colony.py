@@ -188,6 +188,10 @@ HABITS = [
     ({"as_printed": True}, PRINTED),
     ({}, {"alpha": 2.0, "beta": 3.0, "gamma": 0.5, "evaporation": 0.6, "deposit": 4.0, **pheromone(1.0, 2.0, 5.0)}),
     ({}, {"alpha": 0.0, "beta": 0.0, "gamma": 0.0, "evaporation": 0.3, "deposit": 1.0, **pheromone(0, 1, np.inf)}),
+    (
+        {"all_lay": True},
+        {"alpha": 1.0, "beta": 4.0, "gamma": 1.0, "evaporation": 0.2, "deposit": 9, **pheromone(0.1, 2, 3)},
+    ),
 ]
 
 
@@ -197,7 +201,7 @@ def test_ants_walk_and_lay_as_a_plain_colony_does(seed, options, habits):
     """The same random numbers, so the same ways, ant by ant; and pheromone τ ← clamp((1 − ρ) τ + Δτ)."""
     risk_map, limits, ends = random_case(seed)
     weights = WEIGHTS[seed % len(WEIGHTS)]
-    given_habits = {} if options else habits
+    given_habits = {} if "as_printed" in options else habits
     guided = seed % 3 > 0
     route = ant_colony(
         risk_map, *ends, rng=seed, budget=23, ants=5, record=True, height_guided=guided,
@@ -506,6 +510,7 @@ def refuses(message, risk_map=BAD, ends=ENDS, **options):
         ({"max_pheromone": (15.0, 1.0)}, "max_pheromone must be one number"),
         ({"risk_weight": 0.0}, "risk_weight, length_weight, threat_weight are all 0"),
         ({"height_guided": 1}, "height_guided must be True or False, got 1"),
+        ({"all_lay": "best"}, "all_lay must be True or False, got 'best'"),
         ({"record": "no"}, "record must be True or False, got 'no'"),
         ({"as_printed": True, "alpha": -1.0}, "alpha must be finite and at least 0, got -1"),
         ({"length_weight": -1.0}, "length_weight must be finite and at least 0, got -1"),

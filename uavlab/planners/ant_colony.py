@@ -60,6 +60,7 @@ def ant_colony(
     initial_pheromone: float = OURS.first,
     max_pheromone: float = OURS.most,
     height_guided: bool = True,
+    all_lay: bool = False,
     splits: int = 0,
     demand: float | None = None,
     risk_weight: float = 1.0,
@@ -78,7 +79,7 @@ def ant_colony(
     """A route of low cost by an ant colony (RISK-ACO Eqs 11-17).
 
     An ant's weight of a neighbour is τ^α·η^β·C^−γ with η = 1/(d + Δl) and C its price. After each generation
-    τ ← (1 − ρ) τ + Δτ, kept within τ_min and τ_max: the best way so far gets Δτ = Q.
+    τ ← (1 − ρ) τ + Δτ, kept within τ_min and τ_max: the best way so far gets Δτ = Q, unless all ants lay pheromone.
 
     Parameters
     ----------
@@ -104,6 +105,8 @@ def ant_colony(
         τ_min, τ at first, and τ_max. τ_min may be 0, τ_max infinite: no limits.
     height_guided : bool
         With the difference in height to the goal Δl in η (Eq. 12); else η = 1/d (Eq. 11).
+    all_lay : bool
+        Whether all ants that arrive lay Δτ = Q/L (Eqs 15 and 16), with L their length [m]; else the best way gets Q.
     splits : int
         Points at which to split the route (section 3.4), one after the other: the piece with most nodes is split at its
         middle node, and both halves are planned anew; a half stays as it was unless the new one is better. Each split
@@ -114,8 +117,8 @@ def ant_colony(
     record : bool
         Keep `info["pheromone"]`.
     as_printed : bool
-        α = 0.5, β = 80, ρ = 0.8, Q = 100, τ from 0 to 15, γ = 0 in place of these parameters; all ants that arrive
-        lay Δτ = Q/L with L their length [m]: the risk enters nowhere, but for which route is kept.
+        α = 0.5, β = 80, ρ = 0.8, Q = 100, τ from 0 to 15, γ = 0 in place of these parameters, and with `all_lay`: the
+        risk enters nowhere, but for which route is kept.
 
     Returns
     -------
@@ -134,8 +137,8 @@ def ant_colony(
         generator and no seed. If `budget` is below one generation for each split and one more. If `ants` is below 1, or
         `splits` below 0. If `alpha`, `beta`, `gamma` or `min_pheromone` is negative or not finite. If `evaporation` is
         not between 0 and 1. If `deposit`, `initial_pheromone` or `demand` is not above 0. If `min_pheromone`,
-        `initial_pheromone` and `max_pheromone` are not in order. If `height_guided`, `drift`, `record` or `as_printed`
-        is neither True nor False.
+        `initial_pheromone` and `max_pheromone` are not in order. If `height_guided`, `all_lay`, `drift`, `record` or
+        `as_printed` is neither True nor False.
 
     See Also
     --------
@@ -160,8 +163,10 @@ def ant_colony(
     """
     began = time.perf_counter()
     rng = checks.generator("rng", rng)
-    for name, value in (("as_printed", as_printed), ("height_guided", height_guided), ("record", record)):
+    flags = {"as_printed": as_printed, "height_guided": height_guided, "all_lay": all_lay, "record": record}
+    for name, value in flags.items():
         checks.flag(name, value)
+    all_lay = all_lay or as_printed
     ours = Habits(alpha, beta, gamma, evaporation, deposit, min_pheromone, initial_pheromone, max_pheromone)
     ours = checked_habits(ours)
     habits = PRINTED if as_printed else ours
@@ -173,9 +178,9 @@ def ant_colony(
     price = price_per_cell(risk_map, weights)
     between = flyable_endpoints(risk_map, start, goal, limits)
     query = query_of(risk_map, price, between.source, between.target, limits)
-    if as_printed:
+    if all_lay:
         habits = habits._replace(deposit=habits.deposit / risk_map.city.cell)  # Q/L: L in metres, ants count cells
-    colony = Colony(query, habits, height_guided, as_printed, ants, rng)
+    colony = Colony(query, habits, height_guided, all_lay, ants, rng)
     found = forage_and_split(colony, budget, splits, demand, longest, record)
     walked = np.concatenate([search.costs for search in found.searches])
     info = {
