@@ -1,4 +1,4 @@
-"""Exercises of chapter 13, flying in gusts: a point mass in the air, an exact interval, and a distance for a flight.
+"""Exercises of chapter 13, flying in gusts: intervals, a point mass, a distance, a spectrum, and a route in a storm.
 
 A hint says which mistake the answers look like and why it is one. Mistakes are recognised by what they answer, not
 by how they are written.
@@ -8,19 +8,36 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 from scipy.stats import beta, norm
 
+from uavlab.city import City, table1_city
 from uavlab.exercises.hints import alike, each_alike, recognised
-from uavlab.exercises.kinds import asks_for, number, numbers
-from uavlab.vehicle import GRAVITY
+from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, number, numbers, thing
+from uavlab.flight import Autopilot, Rate, crash_rate, monte_carlo
+from uavlab.planners import repare
+from uavlab.route import Route
+from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR
+from uavlab.weather import Wind
 from uavlab.weather.forces import STANDARD_AIR
 
 Acceleration = Callable[[np.ndarray, np.ndarray, np.ndarray, float, float], np.ndarray]
 Interval = Callable[[int, int], tuple[float, float]]
 Distance = Callable[[float, float, float, float], float]
+
+exercise_1 = Quiz(
+    right="b",
+    because="What was drawn at random are the pairs of points. A hundred others may have no such route, or three.",
+    wrong={
+        "a": "The formula is exact for trials that don't depend on each other. Do two flights past the same wall?",
+        "c": "Twenty flights that resemble each other tell less than twenty that don't. Does an interval become "
+        "narrower or wider when you know less?",
+        "d": "Nothing was wrong with these flights. If bad routes are left out because they are bad, what is the rate "
+        "a rate of?",
+    },
+)
 
 DOWN = np.array([0.0, 0.0, GRAVITY])
 FLOWN = [
@@ -31,8 +48,8 @@ FLOWN = [
 
 
 @asks_for(numbers((3,), "the acceleration, a vector of three numbers"))
-def exercise_1(acceleration: Acceleration) -> str:
-    """13.1: thrust, drag of the relative wind and weight."""
+def exercise_2(acceleration: Acceleration) -> str:
+    """13.2: thrust, drag of the relative wind and weight."""
     answers = [acceleration(*case) for case in FLOWN]
     if each_alike(answers, [right_acceleration(*case) for case in FLOWN]):
         return ""
@@ -56,67 +73,41 @@ def drag_of(stream: np.ndarray, drag_area: float) -> np.ndarray:
 
 
 ACCELERATIONS: list[tuple[Acceleration, str]] = [
-    (
-        lambda f, w, v, m, a: (f - drag_of(w - v, a)) / m - DOWN,
-        "Your drag pulls against the stream of air. Hover in a wind: where does it push you?",
-    ),
-    (
-        lambda f, w, v, m, a: (f + drag_of(w, a)) / m - DOWN,
-        "Your drag is that of a UAV that stands still. One that drifts with the wind feels none.",
-    ),
-    (
-        lambda f, w, v, m, a: (f + drag_of(-v, a)) / m - DOWN,
-        "Your drag is that of still air: where is the wind?",
-    ),
-    (
-        lambda f, w, v, m, a: (f + drag_of(w + v, a)) / m - DOWN,
-        "You add wind and velocity. A UAV that flies with the wind feels less of it, not more.",
-    ),
-    (
-        lambda f, w, v, m, a: (f + drag_of(w - v, 2 * a)) / m - DOWN,
-        "Your drag is twice too large: Eq. 2 has one more factor.",
-    ),
-    (
-        lambda f, w, v, m, a: (f + 0.5 * STANDARD_AIR * a * np.abs(w - v) * (w - v)) / m - DOWN,
-        "You square each component on its own. Then the drag of a wind from the south-west isn't that of one from the "
-        "south: what is the length in Eq. 2 taken of?",
-    ),
-    (
-        lambda f, w, v, m, a: (f + 0.5 * STANDARD_AIR * a * (w - v) ** 2) / m - DOWN,
-        "A square has no sign: your drag pushes east and north, whatever the wind.",
-    ),
-    (
-        lambda f, w, v, m, a: (f + 0.5 * STANDARD_AIR * a * (w - v)) / m - DOWN,
-        "Your drag grows with the speed, not with its square. What are the units of your force?",
-    ),
-    (
-        lambda f, w, v, m, a: (f + drag_of(w - v, a)) / m,
-        "Your UAV has no weight: it would rise for ever.",
-    ),
-    (
-        lambda f, w, v, m, a: (f + drag_of(w - v, a)) / m + DOWN,
-        "Your weight pulls up.",
-    ),
-    (
-        lambda f, w, v, m, a: (f + drag_of(w - v, a) - DOWN) / m,
-        "You divide g by the mass. Which of the three are forces?",
-    ),
-    (
-        lambda f, w, v, m, a: f + drag_of(w - v, a) - m * DOWN,
-        "That is the force [N]. Which acceleration does it give?",
-    ),
-    (
-        lambda f, w, v, m, a: f / m + drag_of(w - v, a) - DOWN,
-        "Drag is a force as thrust is: a heavy UAV feels less of it.",
-    ),
-]
+    (lambda f, w, v, m, a: (f - drag_of(w - v, a)) / m - DOWN,
+     "Your drag pulls against the stream of air. Hover in a wind: where does it push you?"),
+    (lambda f, w, v, m, a: (f + drag_of(w, a)) / m - DOWN,
+     "Your drag is that of a UAV that stands still. One that drifts with the wind feels none."),
+    (lambda f, w, v, m, a: (f + drag_of(-v, a)) / m - DOWN,
+     "Your drag is that of still air: where is the wind?"),
+    (lambda f, w, v, m, a: (f + drag_of(w + v, a)) / m - DOWN,
+     "You add wind and velocity. A UAV that flies with the wind feels less of it, not more."),
+    (lambda f, w, v, m, a: (f + drag_of(w - v, 2 * a)) / m - DOWN,
+     "Your drag is twice too large: Eq. 2 has one more factor."),
+    (lambda f, w, v, m, a: (f + 0.5 * STANDARD_AIR * a * np.abs(w - v) * (w - v)) / m - DOWN,
+     "You square each component on its own. Then the drag of a wind from the south-west isn't that of one from the "
+     "south: what is the length in Eq. 2 taken of?"),
+    (lambda f, w, v, m, a: (f + 0.5 * STANDARD_AIR * a * (w - v) ** 2) / m - DOWN,
+     "A square has no sign: your drag pushes east and north, whatever the wind."),
+    (lambda f, w, v, m, a: (f + 0.5 * STANDARD_AIR * a * (w - v)) / m - DOWN,
+     "Your drag grows with the speed, not with its square. What are the units of your force?"),
+    (lambda f, w, v, m, a: (f + drag_of(w - v, a)) / m,
+     "Your UAV has no weight: it would rise for ever."),
+    (lambda f, w, v, m, a: (f + drag_of(w - v, a)) / m + DOWN,
+     "Your weight pulls up."),
+    (lambda f, w, v, m, a: (f + drag_of(w - v, a) - DOWN) / m,
+     "You divide g by the mass. Which of the three are forces?"),
+    (lambda f, w, v, m, a: f + drag_of(w - v, a) - m * DOWN,
+     "That is the force [N]. Which acceleration does it give?"),
+    (lambda f, w, v, m, a: f / m + drag_of(w - v, a) - DOWN,
+     "Drag is a force as thrust is: a heavy UAV feels less of it."),
+]  # fmt: skip
 
 TRIALS = [(0, 100), (1, 1000), (3, 20), (10, 10), (50, 200), (0, 1), (19, 2000)]
 
 
 @asks_for(numbers((2,), "two numbers, (low, high)"))
-def exercise_2(interval: Interval) -> str:
-    """13.2: the exact interval of a crash probability."""
+def exercise_3(interval: Interval) -> str:
+    """13.3: the exact interval of a crash probability."""
     answers = [interval(*trial) for trial in TRIALS]
     ends = np.array(answers, dtype=float)
     wanted = np.array([right_interval(*trial) for trial in TRIALS])
@@ -188,24 +179,20 @@ INTERVALS: list[tuple[Interval, str]] = [
     (normal_interval, NORMAL),
     (rounded_normal, NORMAL),
     (lambda k, n: normal_interval(k, n, clipped=True), NORMAL),
-    (
-        lambda k, n: right_interval(k, n, 0.9),
-        "Yours holds 90 %: 5 % are cut off at either end. How many should be?",
-    ),
-    (
-        equal_tailed,
-        "You have one distribution with one crash and one safe flight added: Bayes' interval for an even prior. "
-        "The exact one has other parameters at each end.",
-    ),
-]
+    (lambda k, n: right_interval(k, n, 0.9),
+     "Yours holds 90 %: 5 % are cut off at either end. How many should be?"),
+    (equal_tailed,
+     "You have one distribution with one crash and one safe flight added: Bayes' interval for an even prior. "
+     "The exact one has other parameters at each end."),
+]  # fmt: skip
 
 WALLS = [(1.0, 8.0, 0.001, 0.5), (1.5, 20.0, 0.01, 0.5), (0.6, 60.0, 0.002, 0.3), (2.0, 3.0, 0.005, 1.0)]
 EASY = (1.0, 0.5, 0.1, 0.4)
 
 
 @asks_for(number("the distance [m]"))
-def exercise_3(distance: Distance) -> str:
-    """13.3: how far to keep off so that at most some share of flights touches the wall."""
+def exercise_4(distance: Distance) -> str:
+    """13.4: how far to keep off so that at most some share of flights touches the wall."""
     answers = [distance(*wall) for wall in WALLS]
     same = partial(alike, relative=1e-5)
     touching = [right_distance(sigma, seconds, -math.log1p(-p), r) for sigma, seconds, p, r in WALLS]
@@ -239,44 +226,102 @@ def margin_for(sigma: float, ratio: float) -> float:
 
 
 DISTANCES: list[tuple[Distance, str]] = [
-    (
-        lambda s, t, p, r: r + 3 * s,
-        "That is 3σ and half the body for each flight, short or long. How many touches does it make in an hour?",
-    ),
-    (
-        lambda s, t, p, r: right_distance(s, t, p, 0.0),
-        "That is the room that the centre needs. What is the first thing that touches?",
-    ),
-    (
-        lambda s, t, p, r: right_distance(s, t, p, 2 * r),
-        "You add the whole body. `radius` is half of it already.",
-    ),
-    (
-        lambda s, t, p, r: right_distance(s, 1.0, p, r),
-        "Your distance is the same for a second and for an hour beside the wall.",
-    ),
-    (
-        lambda s, t, p, r: r + margin_for(s, t / p),
-        "You count a radian as a turn: offsets with ω_n = 1 rad/s don't cross 0 once a second.",
-    ),
-    (
-        lambda s, t, p, r: r + s * math.sqrt(math.log(t / (2 * math.pi * p))),
-        "Check the exponent: σ² stands there with a factor.",
-    ),
-    (
-        lambda s, t, p, r: r + s * math.sqrt(2 * math.log10(t / (2 * math.pi * p))),
-        "The inverse of exp is the natural logarithm, not that to the base 10.",
-    ),
-    (
-        lambda s, t, p, r: r + s * float(norm.ppf(1 - p)),
-        "That is the quantile of one moment on one side. A flight has many moments.",
-    ),
-    (
-        lambda s, t, p, r: r + s * float(norm.ppf(1 - p / 2)),
-        "That is the quantile of one moment, and the wall is on one side. A flight has many moments.",
-    ),
-    (
-        lambda s, t, p, r: r + s**2 * math.sqrt(2 * math.log(t / (2 * math.pi * p))),
-        "Your margin grows with σ². What are its units?",
-    ),
-]
+    (lambda s, t, p, r: r + 3 * s,
+     "That is 3σ and half the body for each flight, short or long. How many touches does it make in an hour?"),
+    (lambda s, t, p, r: right_distance(s, t, p, 0.0),
+     "That is the room that the centre needs. What is the first thing that touches?"),
+    (lambda s, t, p, r: right_distance(s, t, p, 2 * r),
+     "You add the whole body. `radius` is half of it already."),
+    (lambda s, t, p, r: right_distance(s, 1.0, p, r),
+     "Your distance is the same for a second and for an hour beside the wall."),
+    (lambda s, t, p, r: r + margin_for(s, t / p),
+     "You count a radian as a turn: offsets with ω_n = 1 rad/s don't cross 0 once a second."),
+    (lambda s, t, p, r: r + s * math.sqrt(math.log(t / (2 * math.pi * p))),
+     "Check the exponent: σ² stands there with a factor."),
+    (lambda s, t, p, r: r + s * math.sqrt(2 * math.log10(t / (2 * math.pi * p))),
+     "The inverse of exp is the natural logarithm, not that to the base 10."),
+    (lambda s, t, p, r: r + s * float(norm.ppf(1 - p)),
+     "That is the quantile of one moment on one side. A flight has many moments."),
+    (lambda s, t, p, r: r + s * float(norm.ppf(1 - p / 2)),
+     "That is the quantile of one moment, and the wall is on one side. A flight has many moments."),
+    (lambda s, t, p, r: r + s**2 * math.sqrt(2 * math.log(t / (2 * math.pi * p))),
+     "Your margin grows with σ². What are its units?"),
+]  # fmt: skip
+
+
+MEMORY, CLOSE = 1.590, 0.03
+"""τ_u [s] at which gusts of 4 m/s in a wind of 9 m/s make σ = 1 m for the light load in hover, by Eq. 7."""
+
+
+@asks_for_value(number("the memory of the gusts [s]"))
+def exercise_5(memory: float) -> str:
+    """13.5: how long gusts have to last until σ of the offset along the wind is a metre."""
+    value = float(memory)
+    if abs(value - MEMORY) <= CLOSE:
+        return ""
+    for mistake, hint in MEMORIES:
+        if math.isclose(value, mistake, rel_tol=0.02):
+            return hint
+    if not value > 0:
+        return "A memory is a time above 0."
+    if value > MEMORY:
+        return f"With {value:g} s σ is above a metre. The shorter gusts last, the less they push away."
+    return f"With {value:g} s σ is still below a metre: let the gusts last longer."
+
+
+MEMORIES: list[tuple[float, str]] = [
+    (15.27, "That is for the heavy load. A light drone of the same drag needs less."),
+    (0.522, "That is in flight against the wind at 5 m/s. Hovering, the stream of air is 9 m/s."),
+    (1.04, "You took the spectrum as flat, as that of white noise. Gusts that last for a second or more aren't white."),
+    (1.512, "That is σ in metres for gusts that last for ever. Asked for is a time."),
+]  # fmt: skip
+
+ENDS = (90.0, 18.0, 30.0), (50.0, 44.0, 30.0)
+STORM = Wind((9.0, 0.0), deviation=4.0, correlation=3.0)
+
+
+@cache
+def test_city() -> City:
+    return table1_city()
+
+
+def flown(route: Route) -> Rate:
+    """Crashes of 1 000 flights in the storm, with GPS that drifts."""
+    uav = LIGHT_QUADROTOR.loaded(0.25)
+    return crash_rate(monte_carlo(route, test_city(), uav, STORM, Autopilot(), rng=136, flights=1000, time_step=0.04))
+
+
+@cache
+def of_repare() -> tuple[float, Rate]:
+    """Length of REPARE's route and its crashes."""
+    route = repare(test_city(), *ENDS)
+    return route.length, flown(route)
+
+
+@asks_for_value(thing(Route, "a Route, as planners return it and Route(points) makes it"))
+def exercise_6(route: Route) -> str:
+    """13.6: a route out of the notch, no longer than REPARE's, that crashes a third as often in the storm."""
+    if not route.reached:
+        return f"Your route doesn't arrive: {route.reason}. Which planners get out of a notch?"
+    for name, end, wanted in zip(("begins", "ends"), route.points[[0, -1]], ENDS, strict=True):
+        if math.dist(end, wanted) > 1.0:
+            return f"Your route {name} at {tuple(end.round(1).tolist())}, more than a metre from {wanted}."
+    longest, theirs = of_repare()
+    nearest = route.clearance(test_city())
+    if nearest == 0:
+        return "Your route leads through a building."
+    if nearest <= 0.5:
+        return f"Your route comes to {nearest:.2f} m from a wall, and the body's radius is 0.5 m: it needs no gust."
+    if route.length > longest + 0.05:
+        return (
+            f"Your route is {route.length:.1f} m long, REPARE's is {longest:.1f} m. Distance from walls alone is easy: "
+            "where can you come back towards the straight way?"
+        )
+    rate = flown(route)
+    said = f"Of 1 000 flights {rate.per_thousand:.0f} [{rate.low:.0f}, {rate.high:.0f}] crash on your route, and "
+    said += f"{theirs.per_thousand:.0f} [{theirs.low:.0f}, {theirs.high:.0f}] on REPARE's. "
+    if rate.high >= theirs.low:
+        return said + "The intervals overlap: that yours is better isn't shown."
+    if 3 * rate.per_thousand > theirs.per_thousand:
+        return said + "Better, and shown. But it is more than a third. What does your planner take σ for?"
+    return ""
