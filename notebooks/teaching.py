@@ -11,10 +11,8 @@ from pathlib import Path
 import jupytext
 
 PART = re.compile(r"(<!-- (\w+), made by build\.py -->\n\n).*?(\n\n<!-- end -->)", re.DOTALL)
-EXERCISE = re.compile(r"^## (\d\d\.\d+) (.+)(?:\n\n\*([\w -]+?)(?: · |, )(\d+) minutes)?", re.MULTILINE)
+EXERCISE = re.compile(r"^## (\d\d\.\d+) (.+)\n\n\*([\w-]+) · (\d+) minutes\*$", re.MULTILINE)
 CHAPTER = re.compile(r"\[(\d\d)\]\((\w+)\.ipynb\)")
-READING, ANSWERING = 75, 20
-"""Minutes of a chapter, and of an exercise, that don't say how long they take: as many as most of the others."""
 LEVELS = {
     "Warm-up": "The chapter was read: a choice, or a formula in a few lines",
     "Code": "The idea can be written down: a function, tried on cases that the student doesn't see",
@@ -43,28 +41,16 @@ TWELVE_WEEKS = {
     "To an autopilot": ("14",),
     "The project": ("16",),
 }
-UNFRAMED = {
-    "08": ("compute whom a falling UAV hits and how often; find the route of least risk", "chapters 04, 05; integrals"),
-    "10": ("write one step of an ant and of its pheromone; measure the gap to the optimum", "chapter 08; probability"),
-    "11": ("write a swarm and a beetle; say when a swarm settles; compare planners fairly", "chapters 08, 10"),
-    "12": ("build a B-spline; tell a smooth curve from one that can be flown", "chapters 04, 05; derivatives"),
-    "13": ("simulate flights in gusts; give a crash rate with its interval", "chapters 02, 05; Newton's laws"),
-}
-"""Goals and needs of chapters whose first cell doesn't name them yet."""
 
 
 @dataclass(frozen=True)
 class Exercise:
-    """What stands above an exercise; level and minutes are empty where they aren't said."""
+    """What stands above an exercise."""
 
     number: str
     title: str
     level: str
-    stated: int | None
-
-    @property
-    def minutes(self) -> int:
-        return ANSWERING if self.stated is None else self.stated
+    minutes: int
 
 
 @dataclass(frozen=True)
@@ -75,7 +61,7 @@ class Chapter:
     title: str
     goals: str
     needs: str
-    stated: int | None
+    reading: int
     """Minutes to read."""
     exercises: tuple[Exercise, ...]
 
@@ -84,16 +70,8 @@ class Chapter:
         return self.name[:2]
 
     @property
-    def reading(self) -> int:
-        return READING if self.stated is None else self.stated
-
-    @property
     def answering(self) -> int:
         return sum(exercise.minutes for exercise in self.exercises)
-
-    @property
-    def is_estimated(self) -> bool:
-        return None in (self.stated, *(exercise.stated for exercise in self.exercises))
 
 
 def chapters(sources: Path) -> list[Chapter]:
@@ -104,17 +82,15 @@ def chapters(sources: Path) -> list[Chapter]:
 def chapter_of(source: Path) -> Chapter:
     first = jupytext.read(source).cells[0].source
     rows = dict(re.findall(r"^\| \*\*(.+?)\*\* \| (.*) \|$", first, re.MULTILINE))
-    goals, needs = UNFRAMED.get(source.name[:2], ("", ""))
-    minutes = re.match(r"(\d+) minutes to read", rows.get("Time", ""))
+    reading = re.match(r"(\d+) minutes to read", rows["Time"])
+    assert reading is not None, source
     solutions = source.parent / "solutions" / f"{source.stem}_exercises.py"
     return Chapter(
         source.stem,
         first.splitlines()[0].removeprefix("# ").partition(":")[0].replace("*", r"\*"),
-        rows.get("You will be able to", goals),
-        CHAPTER.sub(
-            lambda link: link[0] if source.with_name(f"{link[2]}.py").exists() else link[1], rows.get("You need", needs)
-        ),
-        int(minutes[1]) if minutes else None,
+        rows["You will be able to"],
+        CHAPTER.sub(lambda link: link[0] if source.with_name(f"{link[2]}.py").exists() else link[1], rows["You need"]),
+        int(reading[1]),
         exercises_of(solutions) if solutions.exists() else (),
     )
 
@@ -123,8 +99,7 @@ def exercises_of(solutions: Path) -> tuple[Exercise, ...]:
     """The exercises of a notebook of solutions."""
     text = "\n\n".join(cell.source for cell in jupytext.read(solutions).cells if cell.cell_type == "markdown")
     return tuple(
-        Exercise(number, title, level.removeprefix("To ").capitalize(), int(minutes) if minutes else None)
-        for number, title, level, minutes in EXERCISE.findall(text)
+        Exercise(number, title, level, int(minutes)) for number, title, level, minutes in EXERCISE.findall(text)
     )
 
 
@@ -145,11 +120,10 @@ def with_tables(text: str, sources: Path) -> str:
 def chapter_table(course: list[Chapter]) -> str:
     rows = ["| chapter | you will be able to | you need | reading | exercises |", "|---|---|---|---|---|"]
     for chapter in course:
-        about = "about " if chapter.is_estimated else ""
         link = f"[{len(chapter.exercises)}](exercises/{chapter.name}_exercises.ipynb)"
-        exercises = f"{link}, {about}{chapter.answering} min" if chapter.exercises else ""
+        exercises = f"{link}, {chapter.answering} min" if chapter.exercises else ""
         promises = f"| [{chapter.title}]({chapter.name}.ipynb) | {chapter.goals} | {chapter.needs} "
-        rows.append(f"{promises}| {about}{chapter.reading} min | {exercises} |")
+        rows.append(f"{promises}| {chapter.reading} min | {exercises} |")
     reading, answering = sum(chapter.reading for chapter in course), sum(chapter.answering for chapter in course)
     exercises = f"{sum(len(chapter.exercises) for chapter in course)} exercises, {hours(answering)} hours"
     return "\n".join(rows) + f"\n\nTogether: {len(course)} chapters, {hours(reading)} hours to read; {exercises}."
@@ -161,9 +135,6 @@ def level_table(course: list[Chapter]) -> str:
     for level, meaning in LEVELS.items():
         minutes = [exercise.minutes for exercise in every if exercise.level == level]
         rows.append(f"| {level} | {len(minutes)} | {min(minutes)} to {max(minutes)} | {meaning} |")
-    if unstated := [exercise for exercise in every if not exercise.level]:
-        names = ", ".join(dict.fromkeys(exercise.number[:2] for exercise in unstated))
-        rows.append(f"| not said | {len(unstated)} | counted as {ANSWERING} | Chapters {names}: all of them to code |")
     return "\n".join(rows)
 
 
