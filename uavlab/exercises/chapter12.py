@@ -275,7 +275,7 @@ LEG, NEAR, FAST = 134.9, 0.7, 15.0
 
 @asks_for_value(number("the length of the legs [m]"))
 def exercise_5(leg: float) -> str:
-    """12.5: the shortest even legs of a right angle that can be flown at 15 m/s."""
+    """12.5: the shortest equal legs of a right angle that can be flown at 15 m/s."""
     value = float(leg)
     if abs(value - LEG) <= NEAR:
         return ""

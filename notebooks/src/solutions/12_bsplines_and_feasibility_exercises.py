@@ -180,7 +180,7 @@ print(f"least risk, by the bank alone: {seconds:.1f} s, against {curve.length / 
 #
 # *Experiment · 20 minutes*
 #
-# A route turns by a right angle between even legs. **How long must the legs be at least, so that the UAV of the chapter
+# A route turns by a right angle between equal legs. **How long must the legs be at least, so that the UAV of the chapter
 # can fly the curve at 15 m/s?** Find the length to within half a metre. `fastest` flies a corner within all limits. You
 # can halve an interval again and again, or compute the length by Eqs 8 and 10 and try whether it is right.
 
@@ -267,4 +267,4 @@ draw(control)
 # In the middle of the street the bend has to fit between its two straight lines. If the UAV first moves to the outer
 # wall, then passes near the inner corner and lets itself be carried to the outer wall again, the bend begins earlier
 # and ends later. Its radius is larger, and the speed grows with the root of the radius. Eq. 11 isn't broken: it holds
-# for control points on the corner of the route with even legs, and these are neither.
+# for control points on the corner of the route with equal legs, and these are neither.
