@@ -498,7 +498,7 @@ CALLS = {
         uav=DRONE, disturbance=BREEZE, speed=5.0, min_clearance=0.5, **heights()
     ),
     "planners.least_risk": lambda: risked(
-        heuristic="backward", max_igrc=10, ground_risk_buffer=0.5, **weighed()
+        heuristic="backward", max_igrc=10, ground_risk_buffer=0.5, as_printed=False, **weighed()
     ),
     "planners.optimality_gap": lambda: {"route": LINE, "exact": EXACT},
     "planners.pareto_front": lambda: risked(

@@ -95,6 +95,41 @@ def test_cost_is_that_of_scipy_s_dijkstra_over_states(seed):
             assert (route.reason == "") is route.reached
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_sum_as_printed_is_the_least_by_scipy_s_dijkstra_over_states(seed):
+    """Each move costs half of both its voxels, whatever its length; the ends lack a half, added here by hand."""
+    risk_map, limits, ends = random_case(seed)
+    moves = ways(allowed(risk_map, limits["min_clearance"]), limits["max_turn"], limits["max_pitch"])
+    source, target = (code(risk_map, end) for end in ends)
+    price = prices(risk_map) / np.linalg.norm(OFFSETS, axis=1)[:, None]
+    halves = risk_map.rate.reshape(-1)[[source, target]].sum() / 2
+    for heuristic in ("backward", "zero"):
+        route = least_risk(risk_map, *ends, **limits, as_printed=True, heuristic=heuristic)
+        expected = cheapest_by_scipy(moves, price, source, target) + halves
+        assert route.cost == pytest.approx(expected, rel=1e-9, abs=1e-12 * price.max())
+        if route.reached and len({code(risk_map, point) for point in route.points}) == len(route.points):
+            assert route.cost == pytest.approx(risk_map.cell_sum(route), rel=1e-9, abs=1e-12 * price.max())
+
+
+@pytest.mark.parametrize("number", range(20))
+def test_sum_as_printed_is_that_of_the_voxels_passed(number):
+    """Within a length, and with take-off and landing."""
+    risk_map = campus(number)
+    shortest = least_risk(risk_map, *CAMPUS_FLIGHT, risk_weight=0.0, length_weight=1.0).length
+    for options in ({"max_length": 1.05 * shortest}, {"min_height": 40.0}):
+        by_sum = least_risk(risk_map, *CAMPUS_FLIGHT, as_printed=True, **options)
+        by_integral = least_risk(risk_map, *CAMPUS_FLIGHT, **options)
+        assert by_sum.cost == pytest.approx(risk_map.cell_sum(by_sum), rel=1e-9)
+        assert by_sum.cost <= risk_map.cell_sum(by_integral) * (1 + 1e-9)
+        assert risk_map.integral(by_sum) >= by_integral.cost * (1 - 1e-9)
+
+
+def test_sum_as_printed_is_of_the_risk_alone():
+    for others in ({"drift": True}, {"length_weight": 1.0}, {"threat_weight": 1.0}, {"risk_weight": 2.0}):
+        refuses(least_risk, "as_printed sums up the risk straight below", OPEN, *ENDS, as_printed=True, **others)
+    refuses(least_risk, "as_printed must be True or False", OPEN, *ENDS, as_printed=1)
+
+
 def classes_by_hand(risk_map, buffer):
     """Highest iGRC within a buffer of each cell's centre, for a UAV below 1 m and 25 m/s, from the definition."""
     classes = 2 + (risk_map.population_density[..., None] * 1e6 >= [5, 50, 500, 5_000, 50_000]).sum(axis=-1)

@@ -51,6 +51,7 @@ def least_risk(
     max_igrc: int | None = None,
     ground_risk_buffer: float = 0.0,
     drift: bool = False,
+    as_printed: bool = False,
     heuristic: str = "backward",
 ) -> Route:
     """The route of least cost among all over 26 neighbours that keep the limits.
@@ -89,14 +90,18 @@ def least_risk(
         Distance [m], at least 0, within which the ground beside the route must be of these classes, too.
     drift : bool
         Take the risk where the wreck lands, ahead of the UAV, see `RiskMap.rate_ahead`.
+    as_printed : bool
+        Minimise the papers' sum Σ r over the voxels passed (RISK-ACO Eq. 3, PSO-BAS Eq. 1) instead of the integral, so
+        that a diagonal move costs no more than a straight one. A voxel entered again would count again. Only without
+        other weights and `drift`.
     heuristic : {"backward", "zero"}
         Estimate of the remaining cost: Dijkstra backwards without headings; none (plain Dijkstra over the states).
 
     Returns
     -------
     Route
-        `cost` as above; `info["expanded"]`, nodes and states expanded by both searches; `info["elapsed"]` [s]. Where
-        no route keeps the limits `reached` is False, and `reason` says which limit to loosen.
+        `cost` as above, or Σ r; `info["expanded"]`, nodes and states expanded by both searches; `info["elapsed"]` [s].
+        Where no route keeps the limits `reached` is False, and `reason` says which limit to loosen.
 
     Raises
     ------
@@ -107,7 +112,8 @@ def least_risk(
         `length_weight` or `threat_weight` is negative or not finite, or all are 0. If `max_turn` is not from 0 to π, or
         `max_pitch` not from 0 to π/2. If `min_clearance`, `min_height` or `ground_risk_buffer` is negative or not
         finite. If `max_height` is not above `min_height`. If `max_igrc` is no whole number from 1 to 10. If
-        `max_length` is not above 0. If `drift` is neither True nor False. If `heuristic` is unknown.
+        `max_length` is not above 0. If `drift` or `as_printed` is neither True nor False, or `as_printed` is asked for
+        together with weights or `drift`. If `heuristic` is unknown.
 
     See Also
     --------
@@ -133,7 +139,7 @@ def least_risk(
     limits = checked_limits(
         risk_map, max_turn, max_pitch, min_clearance, min_height, max_height, max_igrc, ground_risk_buffer
     )
-    weights = Weights.checked(risk_weight, length_weight, threat_weight, drift)
+    weights = Weights.checked(risk_weight, length_weight, threat_weight, drift, as_printed)
     price = price_per_cell(risk_map, weights)
     ends = flyable_endpoints(risk_map, start, goal, limits)
     query = query_of(risk_map, price, ends.source, ends.target, limits)

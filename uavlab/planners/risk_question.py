@@ -5,6 +5,7 @@ A limit on turns makes the way to a voxel matter, so a state is a node and a hea
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -46,8 +47,12 @@ LEAST_PRICE = 1e-15
 
 def finished(route: Route, ends: Ends, price: np.ndarray, weights: Weights, max_length: float) -> Route:
     """The route with take-off and landing, at a price per cell of way (1 or 26, nodes), and what it promises."""
-    upwards = price[UPWARDS if len(price) > 1 else 0] / ends.airspace.city.cell
-    return ends.added_to(route, upwards, priced=weights.priced, max_length=max_length)
+    upwards = price[UPWARDS if len(price) > 1 else 0]
+    route = ends.added_to(route, upwards / ends.airspace.city.cell, priced=weights.priced, max_length=max_length)
+    if weights.as_printed:  # each move costs half of both voxels: the ends lack a half
+        first, last = (ends.takeoff or (ends.source,))[0], (ends.landing or (ends.target,))[-1]
+        route = replace(route, cost=route.cost + float(upwards[first] + upwards[last]) / 2)
+    return route
 
 
 class Weights(NamedTuple):
@@ -57,15 +62,22 @@ class Weights(NamedTuple):
     length: float = 0.0
     threat: float = 0.0
     drift: bool = False
+    as_printed: bool = False
 
     @classmethod
-    def checked(cls, risk: float, length: float, threat: float, drift: bool) -> Weights:
+    def checked(cls, risk: float, length: float, threat: float, drift: bool, as_printed: bool = False) -> Weights:
         """Those of a planner's arguments."""
         named = {"risk_weight": risk, "length_weight": length, "threat_weight": threat}
         weights = [checks.not_negative_number(name, weight) for name, weight in named.items()]
         if not any(weights):
             raise ValueError(f"{', '.join(named)} are all 0: give at least one of them a weight above 0")
-        return cls(weights[0], weights[1], weights[2], checks.flag("drift", drift))
+        checks.flag("drift", drift)
+        if checks.flag("as_printed", as_printed) and (drift or weights != [1.0, 0.0, 0.0]):
+            raise ValueError(
+                f"as_printed sums up the risk straight below, and nothing else: leave {', '.join(named)} and drift "
+                "as they are by default"
+            )
+        return cls(weights[0], weights[1], weights[2], drift, as_printed)
 
     @property
     def priced(self) -> str:
@@ -135,6 +147,8 @@ def price_per_cell(risk_map: RiskMap, weights: Weights) -> np.ndarray:
     price = base_price(risk_map, weights)[None]
     if weights.drift and weights.risk > 0:
         price = price + weights.risk * risk_map.rate_ahead
+    if weights.as_printed:  # a sum over voxels: a move costs the same, however long it is
+        price = price / LENGTHS[:, None, None, None]
     return np.maximum(price, LEAST_PRICE * price.max() + 1e-300).reshape(len(price), -1)
 
 

@@ -69,7 +69,7 @@ assert exercises.check("09.1", choice_1)
 #
 # *Warm-up · 10 minutes*
 #
-# Write Eq. 4 of the chapter, the ground risk class before it is rounded, for TLOS = $10^{-6}$ deaths per hour. The
+# Write Eq. 3 of the chapter, the ground risk class before it is rounded, for TLOS = $10^{-6}$ deaths per hour. The
 # arguments are the people per **square kilometre**, as in SORA's table, and the critical area in m².
 
 
@@ -213,7 +213,7 @@ assert cheapest(roads, "depot", "museum", 7) == math.inf
 # *Experiment · 20 minutes*
 #
 # Plan on the reference campus **with drift**, so that the risk is taken where the wreck lands. Let $C_0$ be the true
-# risk of the least risky shortest route, and $L_0$ its length. **By how many per cent must a route be longer than $L_0$
+# risk of the shortest route with the least *true* risk, and $L_0$ its length. **By how many per cent must a route be longer than $L_0$
 # so that its true risk is at most a tenth of $C_0$?** Find the least such percentage, to within 0.2. `pareto_front`
 # takes `drift=True`, and `lengths=` a number of limits or a list of them.
 
