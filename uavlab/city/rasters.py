@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -142,8 +144,9 @@ def number_in(word: str, path: Path, line: int) -> float:
         raise ValueError(f"{path.name}, line {line}: expected a number, got {word[:30]!r}") from None
 
 
-def read_geotiff(path: Path, crs: Any) -> Terrain:
-    """A GeoTIFF with one band of heights, in their own unit and scale if they have one; a turned one is as good."""
+@contextmanager
+def one_band(path: Path, what: str) -> Iterator[Any]:
+    """A GeoTIFF with one band, open; without rasterio an `ImportError`, a `ValueError` if it can't be read."""
     try:
         import rasterio
     except ImportError:
@@ -154,13 +157,19 @@ def read_geotiff(path: Path, crs: Any) -> Terrain:
             file = rasterio.open(path)
         with file:
             if file.count != 1:
-                raise ValueError(f"{path.name} has {file.count} bands, expected one, of heights")
-            check_pixels(path.name, file.height, file.width)
-            heights = filled_masks(f"heights of {path.name}", file.read(1, masked=True))
-            heights = heights * file.scales[0] + file.offsets[0]
-            transform, declared, unit = file.transform, file.crs, file.units[0]
+                raise ValueError(f"{path.name} has {file.count} bands, expected one, of {what}")
+            yield file
     except rasterio.errors.RasterioError as error:
         raise ValueError(f"{path.name} is no GeoTIFF that can be read: {error}") from None
+
+
+def read_geotiff(path: Path, crs: Any) -> Terrain:
+    """A GeoTIFF with one band of heights, in their own unit and scale if they have one; a turned one is as good."""
+    with one_band(path, "heights") as file:
+        check_pixels(path.name, file.height, file.width)
+        heights = filled_masks(f"heights of {path.name}", file.read(1, masked=True))
+        heights = heights * file.scales[0] + file.offsets[0]
+        transform, declared, unit = file.transform, file.crs, file.units[0]
     if transform.is_identity or transform.is_degenerate:
         raise ValueError(f"{path.name} doesn't say where it lies: use Terrain.from_raster(heights, bounds)")
     if crs is None and declared is None:

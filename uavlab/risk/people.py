@@ -5,7 +5,6 @@ Such files cover a country or more, so only the part around the city is read.
 
 from __future__ import annotations
 
-import warnings
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,7 +13,7 @@ import numpy as np
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.place import LOCAL, System, system_for, system_of
-from uavlab.city.rasters import ascii_grid, system_beside
+from uavlab.city.rasters import ascii_grid, one_band, system_beside
 from uavlab.city.source import Notes, Source
 from uavlab.city.terrain import COVERED
 from uavlab.risk.layers import PER, border_of, pixels_of, raster_layer
@@ -141,36 +140,22 @@ def grid_around(city: City, path: Path, crs: Any) -> Part:
 
 def geotiff_around(city: City, path: Path, crs: Any) -> Part:
     """The part of a GeoTIFF with one band that lies around a city."""
-    try:
-        import rasterio
-        from rasterio.windows import Window
-    except ImportError:
-        raise ImportError(f'{path.name} is a GeoTIFF, which needs rasterio: pip install "uavlab[raster]"') from None
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)  # refused below
-            file = rasterio.open(path)
-        with file:
-            if file.count != 1:
-                raise ValueError(f"{path.name} has {file.count} bands, expected one, of people")
-            grid = file.transform
-            if grid.is_identity or grid.is_degenerate or grid.b or grid.d or grid.a < 0 or grid.e > 0:
-                raise ValueError(f"{path.name} doesn't say where it lies, or is turned: use raster_layer, or gdalwarp")
-            if crs is None and file.crs is None:
-                raise ValueError(f"{path.name} names no reference system: give crs='EPSG:...', or crs='local'")
-            local = isinstance(crs, str) and crs == LOCAL
-            system = None if local else system_of(file.crs.to_wkt() if crs is None else crs)
-            border = border_of(city, system)
-            pixels = np.nan_to_num((border[:, ::-1] - (grid.f, grid.c)) / (grid.e, grid.a), nan=-1e9)
-            ends = np.stack([np.floor(pixels.min(axis=0)) - BESIDE, np.ceil(pixels.max(axis=0)) + BESIDE])
-            (top, left), (bottom, right) = np.clip(ends, 0, file.shape).astype(int).tolist()
-            if top >= bottom or left >= right:
-                raise ValueError(f"{path.name} doesn't reach the city: is it the tile of that place?")
-            window = Window.from_slices((top, bottom), (left, right))
-            read = file.read(1, window=window, masked=True)
-            values = np.where(np.ma.getmaskarray(read), np.nan, np.ma.getdata(read).astype(float))
-            values = values * file.scales[0] + file.offsets[0]
-            bounds = grid.c + left * grid.a, grid.f + bottom * grid.e, grid.c + right * grid.a, grid.f + top * grid.e
-    except rasterio.errors.RasterioError as error:
-        raise ValueError(f"{path.name} is no GeoTIFF that can be read: {error}") from None
+    with one_band(path, "people") as file:
+        grid = file.transform
+        if grid.is_identity or grid.is_degenerate or grid.b or grid.d or grid.a < 0 or grid.e > 0:
+            raise ValueError(f"{path.name} doesn't say where it lies, or is turned: use raster_layer, or gdalwarp")
+        if crs is None and file.crs is None:
+            raise ValueError(f"{path.name} names no reference system: give crs='EPSG:...', or crs='local'")
+        local = isinstance(crs, str) and crs == LOCAL
+        system = None if local else system_of(file.crs.to_wkt() if crs is None else crs)
+        border = border_of(city, system)
+        pixels = np.nan_to_num((border[:, ::-1] - (grid.f, grid.c)) / (grid.e, grid.a), nan=-1e9)
+        ends = np.stack([np.floor(pixels.min(axis=0)) - BESIDE, np.ceil(pixels.max(axis=0)) + BESIDE])
+        (top, left), (bottom, right) = np.clip(ends, 0, file.shape).astype(int).tolist()
+        if top >= bottom or left >= right:
+            raise ValueError(f"{path.name} doesn't reach the city: is it the tile of that place?")
+        read = file.read(1, window=((top, bottom), (left, right)), masked=True)
+        values = np.where(np.ma.getmaskarray(read), np.nan, np.ma.getdata(read).astype(float))
+        values = values * file.scales[0] + file.offsets[0]
+        bounds = grid.c + left * grid.a, grid.f + bottom * grid.e, grid.c + right * grid.a, grid.f + top * grid.e
     return values, bounds, system
