@@ -133,16 +133,6 @@ MISTAKES = {
 }
 
 
-CASES = [(number, words) for number, mistakes in MISTAKES.items() for words in mistakes]
-
-
-@pytest.mark.parametrize(("number", "words"), CASES, ids=range(len(CASES)))
-def test_mistake_gets_its_own_hint(number, words):
-    verdict = exercises.check(number, MISTAKES[number][words])
-    assert not verdict
-    assert words in verdict.hint
-
-
 def test_a_heading_that_is_none_nowhere():
     assert "Return None there" in exercises.check("01.4", without_none).hint
 

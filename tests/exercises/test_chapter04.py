@@ -99,13 +99,6 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize(("number", "words"), [(number, words) for number, some in MISTAKES.items() for words in some])
-def test_mistake_gets_its_own_hint(number, words):
-    verdict = exercises.check(number, MISTAKES[number][words])
-    assert not verdict
-    assert words in verdict.hint
-
-
 def test_half_a_cell_off_and_cut_at_zero_is_still_a_ball():
     def answer(point, voxel, cell):
         return max(np.linalg.norm(offset(point, voxel, cell)) - cell / 2, 0.0)

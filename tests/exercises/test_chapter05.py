@@ -145,14 +145,6 @@ MISTAKES = {
         "by texts": (TOWN | {3: {}}, {}),
     },
 }
-CASES = [(number, words) for number, mistakes in MISTAKES.items() for words in mistakes]
-
-
-@pytest.mark.parametrize(("number", "words"), CASES)
-def test_a_mistake_is_told_what_it_is(number, words):
-    verdict = check(number, MISTAKES[number][words])
-    assert not verdict
-    assert words in verdict.hint
 
 
 def test_two_mistakes_in_the_search_are_told_one_by_one():

@@ -220,13 +220,6 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize(("number", "words"), [(n, words) for n, known in MISTAKES.items() for words in known])
-def test_mistakes(number, words):
-    verdict = check(number, MISTAKES[number][words])
-    assert not verdict
-    assert words in verdict.hint
-
-
 @pytest.mark.parametrize(
     ("number", "answer"),
     [

@@ -142,14 +142,6 @@ MISTAKES = {
         "The answer is a pair of routes": STRAIGHT,
     },
 }
-CASES = [(number, words) for number, mistakes in MISTAKES.items() for words in mistakes]
-
-
-@pytest.mark.parametrize(("number", "words"), CASES)
-def test_a_mistake_is_told_what_it_is(number, words):
-    verdict = exercises.check(number, MISTAKES[number][words])
-    assert not verdict
-    assert words in verdict.hint
 
 
 def test_best_speeds_are_those_of_the_model():

@@ -1,4 +1,4 @@
-"""The checker, and what holds for every exercise; each chapter's typical mistakes have a test of their own."""
+"""The checker, and what holds for every exercise, with the mistakes that each chapter's tests list."""
 
 import importlib
 import re
@@ -38,7 +38,9 @@ def test_at_least_three_mistakes_have_words_of_their_own(number):
     exercise = getattr(importlib.import_module(f"uavlab.exercises.chapter{number[:2]}"), f"exercise_{number[3:]}")
     known = importlib.import_module(f"test_chapter{number[:2]}").MISTAKES.get(number, {})
     mistakes = {words: letter for letter, words in exercise.wrong.items()} if number in CHOICES else known
-    hints = {words: exercises.check(number, answer).hint for words, answer in mistakes.items()}
+    verdicts = {words: exercises.check(number, answer) for words, answer in mistakes.items()}
+    assert not any(verdicts.values())
+    hints = {words: verdict.hint for words, verdict in verdicts.items()}
     assert len(hints) >= 3
     for words, hint in hints.items():
         assert words in hint

@@ -5,7 +5,7 @@ import operator
 import numpy as np
 import pytest
 
-from uavlab.exercises.hints import alike, each_alike, recognised
+from uavlab.exercises.hints import alike, each_alike, recognised, recognised_value
 
 CASES = [(1.0, 2.0), (3.0, 4.0)]
 MISTAKES = [(operator.sub, "sign"), (operator.mul, "product"), (lambda a, b: a * b, "product again")]
@@ -16,6 +16,15 @@ MISTAKES = [(operator.sub, "sign"), (operator.mul, "product"), (lambda a, b: a *
 )
 def test_first_mistake_that_answers_all_cases_alike_is_recognised(answers, hint):
     assert recognised(answers, MISTAKES, CASES, alike) == hint
+
+
+@pytest.mark.parametrize(
+    ("value", "hint"),
+    [(100.9, "per cent"), (101.1, ""), (0.004, "zero"), (0.006, ""), (2.29, "its own"), (2.31, ""), (-99.1, "sign")],
+)
+def test_known_value_is_recognised_by_a_share_a_difference_or_a_nearness_of_its_own(value, hint):
+    known = [(100.0, "per cent"), (0.0, "zero"), (2.0, 0.3, "its own"), (2.2, "too late"), (-100.0, "sign")]
+    assert recognised_value(value, known, relative=0.01, absolute=0.005) == hint
 
 
 def test_numbers_are_alike_within_either_tolerance():

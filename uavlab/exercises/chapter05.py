@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from uavlab.exercises.hints import each_alike, recognised
+from uavlab.exercises.hints import each_alike, recognised, recognised_value
 from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, described, is_number, number, thing, truth
 
 Move = tuple[int, ...]
@@ -248,9 +248,8 @@ def exercise_5(omega: float) -> str:
     value = float(omega)
     if abs(value - TIPPING) <= NEAR:
         return ""
-    for mistake, hint in TIPPING_MISTAKES:
-        if math.isclose(value, mistake, rel_tol=0.01, abs_tol=NEAR):
-            return hint
+    if hint := recognised_value(value, TIPPING_MISTAKES, absolute=NEAR):
+        return hint
     if not value > 0:
         return "ω is a price, so it is above 0. At 0 the route is the shortest, which scrapes along the wall."
     if value > TIPPING:

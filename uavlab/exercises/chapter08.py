@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from uavlab.city import City
-from uavlab.exercises.hints import each_alike, recognised
+from uavlab.exercises.hints import each_alike, recognised, recognised_value
 from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, number, shape_of, thing
 from uavlab.risk import RiskMap, person_rate
 from uavlab.route import Route
@@ -284,9 +284,8 @@ def exercise_5(speed: float) -> str:
         return "A speed from 1 to 40 m/s is asked for."
     if abs(value - BEST_SPEED) <= NEAR:
         return ""
-    for mistake, near, hint in SPEED_MISTAKES:
-        if abs(value - mistake) <= near:
-            return hint
+    if hint := recognised_value(value, SPEED_MISTAKES):
+        return hint
     deaths, best = (float(person_rate(30.0, shelter=0.25, speed=v)) / v for v in (value, BEST_SPEED))
     why = "over each place for longer than need be" if value < BEST_SPEED else "hitting more people, and harder"
     return f"At {value:g} m/s it is {why}: {deaths / best - 1:.1%} more deaths per metre than at the best speed."

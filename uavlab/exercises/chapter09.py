@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from uavlab.exercises.hints import alike, recognised
+from uavlab.exercises.hints import alike, recognised, recognised_value
 from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, described, number, thing, whole_number
 from uavlab.planners import least_risk
 from uavlab.risk import CAMPUS_FLIGHT, RiskMap, random_campus, raw_igrc
@@ -234,9 +234,8 @@ def exercise_5(longer_by: float) -> str:
     value = float(longer_by)
     if abs(value - TENTH) <= 0.2 + 1e-9:
         return ""
-    for mistake, hint in FRONT_MISTAKES:
-        if math.isclose(value, mistake, rel_tol=0.01, abs_tol=0.005):
-            return hint
+    if hint := recognised_value(value, FRONT_MISTAKES, absolute=0.005):
+        return hint
     if not value > 0:
         return "A shortest route has all of C_0, so the answer is above 0."
     if value < TENTH:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from uavlab.exercises.asked import BUDGET, Asked, holes, valley
-from uavlab.exercises.hints import alike, recognised
+from uavlab.exercises.hints import alike, recognised, recognised_value
 from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, number, numbers
 from uavlab.optimizers import pso
 
@@ -311,9 +311,8 @@ def exercise_5(claim: float) -> str:
     value = float(claim)
     if abs(value - CHEATED) <= NEAR:
         return ""
-    for mistake, near, hint in CLAIM_MISTAKES:
-        if abs(value - mistake) <= near:
-            return hint
+    if hint := recognised_value(value, CLAIM_MISTAKES):
+        return hint
     if value > 0:
         return f"You say that the claim is {value:.2g} above the truth. Which cost did the optimiser make small?"
     return f"We find another value than {value:.3g}. Seeds 0 to 4, 3000 evaluations and legs=4 each: one ratio a seed."

@@ -6,7 +6,6 @@ by how they are written.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
@@ -14,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from uavlab.city import City
-from uavlab.exercises.hints import alike, each_alike, recognised
+from uavlab.exercises.hints import alike, each_alike, recognised, recognised_value
 from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, number, numbers
 from uavlab.spline import Curve, cubic_bspline, feasibility, greatest_speed
 from uavlab.vehicle import RISK_QUADROTOR
@@ -279,9 +278,8 @@ def exercise_5(leg: float) -> str:
     value = float(leg)
     if abs(value - LEG) <= NEAR:
         return ""
-    for mistake, hint in LEG_MISTAKES:
-        if math.isclose(value, mistake, rel_tol=0.012):
-            return hint
+    if hint := recognised_value(value, LEG_MISTAKES, relative=0.012):
+        return hint
     if not value > 0:
         return "A leg has a length above 0."
     if value > LEG:

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.stats import beta, norm
 
 from uavlab.city import City, table1_city
-from uavlab.exercises.hints import alike, each_alike, recognised
+from uavlab.exercises.hints import alike, each_alike, recognised, recognised_value
 from uavlab.exercises.kinds import Quiz, asks_for, asks_for_value, number, numbers, thing
 from uavlab.flight import Autopilot, Rate, crash_rate, monte_carlo
 from uavlab.planners import repare
@@ -259,9 +259,8 @@ def exercise_5(memory: float) -> str:
     value = float(memory)
     if abs(value - MEMORY) <= CLOSE:
         return ""
-    for mistake, hint in MEMORIES:
-        if math.isclose(value, mistake, rel_tol=0.02):
-            return hint
+    if hint := recognised_value(value, MEMORIES, relative=0.02):
+        return hint
     if not value > 0:
         return "A memory is a time above 0."
     if value > MEMORY:

@@ -41,6 +41,26 @@ def recognised(
     return ""
 
 
+def recognised_value(
+    value: float, mistakes: Iterable[Sequence[Any]], relative: float = 0.01, absolute: float = 0.0
+) -> str:
+    """Hint of the first known wrong value that a number is close to, or nothing.
+
+    Parameters
+    ----------
+    value : float
+        What the student hands over.
+    mistakes : iterable of (float, str) or (float, float, str)
+        What else students find, how close is close where that is its own, and what to tell them.
+    relative, absolute : float
+        How close is close: a share of the wrong value or a difference, whichever is more.
+    """
+    for wrong, *near, hint in mistakes:
+        if abs(value - wrong) <= (near[0] if near else max(relative * abs(wrong), absolute)):
+            return hint
+    return ""
+
+
 def alike(answers: Any, wanted: Any, relative: float = 1e-6, absolute: float = 1e-8) -> bool:
     """Whether numbers are the same but for rounding, all at once: answers of one shape."""
     return bool(np.allclose(answers, wanted, rtol=relative, atol=absolute))
