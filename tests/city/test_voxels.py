@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from uavlab.city.voxels import distance_to_obstacle, squared_clearance, voxels_on_segment
+from uavlab.city.voxels import distance_to_obstacle, put_clearance, voxels_on_segment
 
 maps = arrays(bool, array_shapes(min_dims=3, max_dims=3, max_side=7), elements=st.booleans())
 on_grid = st.integers(-12, 12).map(lambda half: half / 2)
@@ -24,28 +24,34 @@ def nearest_box(occupied):
     return squared.min(axis=1, initial=np.inf).reshape(occupied.shape)
 
 
+def clearance_of(occupied, cell=1.0):
+    clearance = np.full(occupied.shape, np.nan)
+    put_clearance(occupied, cell, clearance)
+    return clearance
+
+
 @given(maps)
 @settings(deadline=None, max_examples=200)
 def test_clearance_is_the_distance_to_the_nearest_box(occupied):
-    assert np.array_equal(squared_clearance(occupied), nearest_box(occupied))
+    assert np.array_equal(clearance_of(occupied, 3.0), 3.0 * np.sqrt(nearest_box(occupied)))
 
 
 @pytest.mark.parametrize("density", [0.002, 0.02, 0.3])
 def test_clearance_on_larger_random_maps(density):
     occupied = np.random.default_rng(7).random((23, 17, 11)) < density
     assert occupied.any()
-    assert np.array_equal(squared_clearance(occupied), nearest_box(occupied))
+    assert np.array_equal(clearance_of(occupied, 3.0), 3.0 * np.sqrt(nearest_box(occupied)))
 
 
 def test_clearance_is_infinite_without_obstacles_and_zero_within():
-    assert np.isinf(squared_clearance(np.zeros((3, 4, 5), bool))).all()
-    assert not squared_clearance(np.ones((3, 4, 5), bool)).any()
+    assert np.isinf(clearance_of(np.zeros((3, 4, 5), bool))).all()
+    assert not clearance_of(np.ones((3, 4, 5), bool)).any()
 
 
 @given(maps, points, st.one_of(st.floats(0, 12), st.just(np.inf)))
 @settings(deadline=None, max_examples=300)
 def test_distance_from_any_point_is_that_to_the_nearest_box_as_far_as_it_is_to_be_exact(occupied, point, within):
-    clearance = np.sqrt(squared_clearance(occupied))
+    clearance = clearance_of(occupied)
     boxes = np.argwhere(occupied)
     gap = np.maximum(np.maximum(boxes - point, point - boxes - 1), 0.0)
     right = np.linalg.norm(gap, axis=1).min(initial=np.inf)

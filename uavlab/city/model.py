@@ -34,11 +34,8 @@ from uavlab.city.rasterise import bilinear, mark_ground, range_of_ground, raster
 from uavlab.city.segments import Runs, runs_of, segment_clearances
 from uavlab.city.source import Source
 from uavlab.city.terrain import Terrain, checked_terrain
-from uavlab.city.voxels import SURFACE, distances_to_obstacle, squared_clearance, voxels_on_polyline
+from uavlab.city.voxels import SURFACE, distances_to_obstacle, least_kept, put_clearance, voxels_on_polyline
 from uavlab.city.zones import NoFlyZone, body_of, checked_zones
-
-TINY = 1e-300
-"""A clearance below this is that of an obstacle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,9 +245,8 @@ class City:
         >>> City(np.array([[[False]], [[False]], [[True]]]), cell=2.0).clearance.ravel()
         array([3., 1., 0.])
         """
-        clearance = squared_clearance(self.occupied)
-        np.sqrt(clearance, out=clearance)
-        clearance *= self.cell
+        clearance = np.empty(self.shape)
+        put_clearance(self.occupied, self.cell, clearance)
         return locked(clearance)
 
     @cached_property
@@ -596,7 +592,7 @@ class City:
         min_height, max_height = checked_heights(min_height, max_height)
         blocked = self.occupied
         if min_clearance > 0:
-            blocked = self.clearance < max(min_clearance - 1e-9 * self.cell, TINY)
+            blocked = self.clearance < least_kept(min_clearance, self.cell)
         if self.no_fly:
             blocked = blocked | self.in_no_fly
         if min_height > 0 or max_height < np.inf:

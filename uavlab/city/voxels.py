@@ -14,6 +14,9 @@ from uavlab.compiled import compiled
 SURFACE = 1e-9
 """What is nearer than this touches [cells]."""
 
+TINY = 1e-300
+"""A clearance below this is that of an obstacle."""
+
 MOST_PASSED = 50_000_000
 """A polyline through more voxels is refused: it would need gigabytes."""
 
@@ -24,18 +27,33 @@ SAME_SHARE = 1e-12
 """Shares of a segment that differ by less are the same point."""
 
 
-def squared_clearance(occupied: np.ndarray) -> np.ndarray:
-    """Squared distance [cells²] from each centre to the nearest surface of an occupied voxel, (nx, ny, nz).
+@compiled
+def put_clearance(occupied, cell, clearance):
+    """Write the distance [m] from each centre to the nearest surface of an occupied voxel into (nx, ny, nz) floats.
 
-    0 inside; infinite everywhere when nothing is occupied. One axis after the other, the minimum over all obstacles
-    is a lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012), here on a line of half cells, because
-    the nearest point of a voxel is its centre plane or one of its faces. Distances between centres would be off
-    by half a cell and more.
+    0 inside; infinite everywhere when nothing is occupied. One axis after the other, the minimum of the squares over
+    all obstacles is a lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012), here on a line of half cells,
+    because the nearest point of a voxel is its centre plane or one of its faces. Distances between centres would be
+    off by half a cell and more.
     """
-    squared = np.where(occupied, 0.0, np.inf)
-    for axis in range(3):
-        envelope_along_last_axis(np.moveaxis(squared, axis, 2))
-    return squared
+    nx, ny, nz = occupied.shape
+    for i in range(nx):
+        for j in range(ny):
+            for k in range(nz):
+                clearance[i, j, k] = 0.0 if occupied[i, j, k] else np.inf
+    envelope_along_last_axis(clearance.transpose(1, 2, 0))
+    envelope_along_last_axis(clearance.transpose(0, 2, 1))
+    envelope_along_last_axis(clearance)
+    for i in range(nx):
+        for j in range(ny):
+            for k in range(nz):
+                clearance[i, j, k] = math.sqrt(clearance[i, j, k]) * cell
+
+
+@compiled
+def least_kept(min_clearance, cell):
+    """The clearance [m] from which on a centre keeps one that is asked for, to rounding; none is that of an obstacle."""
+    return max(min_clearance - 1e-9 * cell, TINY) if min_clearance > 0 else TINY
 
 
 @compiled

@@ -165,7 +165,7 @@ def cheapest_route(
     if parent[last] == UNSEEN:
         nowhere = no_way(city, source, target, int(np.count_nonzero(parent)))
         return replace(nowhere, info=nowhere.info | info)
-    nodes = trace(parent, first, last, city.shape)
+    nodes = trace(parent, first, last, blocked)
     cost = float(g[last]) * city.cell
     return Route(city.center_of(city.index_of(nodes[::-1] if backwards else nodes)), "A*", cost=cost, info=info)
 
@@ -319,10 +319,17 @@ def search(query, price, tree, waiting, record):
     return expanded, order
 
 
-def trace(parent: np.ndarray, source: int, target: int, shape: tuple[int, int, int]) -> np.ndarray:
+@compiled
+def trace(parent, source, target, blocked):
     """Node codes from source to target, back along the moves that led there."""
-    steps = MOVES @ np.array([shape[1] * shape[2], shape[2], 1])
-    nodes = [target]
-    while nodes[-1] != source:
-        nodes.append(nodes[-1] - int(steps[parent[nodes[-1]] - 1]))
-    return np.array(nodes[::-1])
+    steps = steps_of(blocked)
+    count, node = 1, target
+    while node != source:
+        node -= steps[parent[node] - 1]
+        count += 1
+    nodes = np.empty(count, np.int64)
+    node = target
+    for n in range(count - 1, -1, -1):
+        nodes[n] = node
+        node -= steps[parent[node] - 1] if n > 0 else 0
+    return nodes

@@ -113,7 +113,7 @@ def least_energy(
         )
         reason = f"{ways}: all {np.count_nonzero(parent)} voxels within reach were searched"
         return timed(Route.none("least energy", reason, **info), began)
-    nodes = trace(parent, ends.source, ends.target, city.shape)
+    nodes = trace(parent, ends.source, ends.target, airspace.blocked)
     route = ends.added_to(Route(city.center_of(city.index_of(nodes)), "least energy", info=info), priced="energy")
     legs = np.diff(route.points, axis=0)
     return timed(replace(route, cost=float((route.leg_lengths * per_metre(legs)).sum())), began)

@@ -132,16 +132,28 @@ def search_states(query, rest, g, parent, waiting):
     return -1, expanded
 
 
-def trace(query: Query, parent: np.ndarray, last: int) -> np.ndarray:
+@compiled
+def trace(query, parent, last):
     """Nodes from the start to the last state, back along the moves that led there."""
     steps = steps_of(query.blocked)
-    nodes = [last // STATES]
-    state = last
+    count, state = 1, last
     while parent[state] != START:
-        move, heading = divmod(int(parent[state]) - 1, STATES)
-        nodes.append(nodes[-1] - int(steps[move]))
-        state = nodes[-1] * STATES + heading
-    return np.array(nodes[::-1])
+        state = state_before(steps, parent, state)
+        count += 1
+    nodes = np.empty(count, np.int64)
+    state = last
+    for n in range(count - 1, -1, -1):
+        nodes[n] = state // STATES
+        if n > 0:
+            state = state_before(steps, parent, state)
+    return nodes
+
+
+@compiled
+def state_before(steps, parent, state):
+    """The state that a state was reached from."""
+    move, heading = divmod(np.int64(parent[state]) - 1, STATES)
+    return (state // STATES - steps[move]) * STATES + heading
 
 
 @compiled

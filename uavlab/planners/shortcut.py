@@ -135,27 +135,24 @@ def price_or_length(city: City, price: npt.ArrayLike | None) -> tuple[np.ndarray
     return None, 1.0
 
 
-def rounds(
-    points: np.ndarray,
-    bounds: Bounds,
-    prices: np.ndarray | None,
-    cheapest: float,
-    same: float,
-    lookback: int,
-) -> tuple[np.ndarray, float, int]:
+@compiled
+def rounds(points, bounds, prices, cheapest, same, lookback):
     """The waypoints to keep (K,), what the way over them costs, and the end of the first leg that isn't free, or 0."""
     kept = np.arange(len(points))
     while True:
         best, parent = cheapest_subset(points[kept], bounds, prices, cheapest, same, lookback)
-        if not np.isfinite(best).all():
-            return kept, np.inf, int(np.flatnonzero(~np.isfinite(best))[0])
-        chosen = [len(kept) - 1]
-        while chosen[-1] != 0:
-            chosen.append(int(parent[chosen[-1]]))
-        done = len(kept) <= lookback or len(chosen) == len(kept)
-        kept = kept[chosen[::-1]]
+        for n in range(len(kept)):
+            if best[n] == np.inf:
+                return kept, np.inf, n
+        chosen = np.zeros(len(kept), np.bool_)
+        at = len(kept) - 1
+        while not chosen[at]:
+            chosen[at] = True
+            at = parent[at]
+        done = len(kept) <= lookback or chosen.all()
+        kept = kept[chosen]
         if done:
-            return kept, float(best[-1]), 0
+            return kept, best[-1], 0
 
 
 def told(promises: dict[str, float]) -> str:

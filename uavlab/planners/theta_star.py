@@ -8,7 +8,6 @@ Where it isn't free, or dear, the best of the neighbours that were expanded is t
 
 from __future__ import annotations
 
-import itertools
 import time
 from dataclasses import replace
 from typing import NamedTuple
@@ -151,16 +150,30 @@ def theta_star(
     return timed(ends.added_to(route, prices, priced="" if price is None else "price"), began)
 
 
-def around_corners(points: np.ndarray, step: float) -> np.ndarray:
+@compiled
+def around_corners(points, step):
     """The waypoints (N, 3) with others on the legs before and after each corner, so far apart [m]."""
-    finer = [points[:1]]
-    for number, (start, end) in enumerate(itertools.pairwise(points)):
-        length = float(np.linalg.norm(end - start))
-        away = step * np.arange(1, TAUT_POINTS + 1) / length
-        shares = np.concatenate([away * (number > 0), 1 - away * (number < len(points) - 2)])
-        shares = np.unique(shares[(shares > 0) & (shares < 1)])
-        finer += [start + shares[:, None] * (end - start), end[None]]
-    return np.concatenate(finer)
+    finer = np.empty((1 + (2 * TAUT_POINTS + 1) * (len(points) - 1), 3))
+    finer[0] = points[0]
+    count = 1
+    for leg in range(len(points) - 1):
+        length = distance(points[leg], points[leg + 1])
+        shares = np.zeros(2 * TAUT_POINTS + 1)
+        for n in range(TAUT_POINTS):
+            away = step * (n + 1) / length
+            shares[2 * n] = away * (leg > 0)
+            shares[2 * n + 1] = 1 - away * (leg < len(points) - 2)
+        shares.sort()
+        before = 0.0
+        for share in shares:
+            if before < share < 1:
+                for a in range(3):
+                    finer[count, a] = points[leg, a] + share * (points[leg + 1, a] - points[leg, a])
+                count += 1
+                before = share
+        finer[count] = points[leg + 1]
+        count += 1
+    return finer[:count]
 
 
 @compiled
