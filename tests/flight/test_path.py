@@ -8,7 +8,7 @@ from places import EXACT, SKY, straight
 from scipy.spatial.transform import Rotation
 
 from uavlab.flight import OffsetProcess, fly, monte_carlo
-from uavlab.flight.path import BANK, BRAKING, TURN_JUMP, level_thrust, planned_speed
+from uavlab.flight.path import BANK, BRAKING, TURN_JUMP, planned_speed, vehicle_in
 from uavlab.flight.reference import speed_at, steps_to_goal
 from uavlab.flight.simulation import setup_of
 from uavlab.resilience import ADVANCED, Controller
@@ -73,7 +73,8 @@ def test_on_a_dense_arc_the_lateral_acceleration_is_what_bank_or_half_the_thrust
     wind = Wind((0, 8))
     arc = Route(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(300, 30.0)]))
     path = planned_speed(arc, uav, wind, 15.0)
-    held = 0.5 * np.subtract(*level_thrust(uav, wind)) / (uav.weight / GRAVITY)
+    drag = 0.5 * 1.225 * uav.drag_area * 8.0**2
+    held = 0.5 * (float(uav.horizontal_reserve()) - drag) / (uav.weight / GRAVITY)
     assert (held < GRAVITY * np.tan(BANK)) == (uav.payload > 0)
     lateral = path.at_points**2 / radius
     assert lateral.max() == pytest.approx(min(held, GRAVITY * np.tan(BANK)), rel=1e-3)
@@ -144,7 +145,7 @@ def test_one_rule_grounds_flights_and_weather(uav, wind, reason):
 
 def test_the_limit_of_gusts_ends_where_the_reserve_is_used_up():
     reserve = WEAK.horizontal_reserve(rain_force(30, WEAK.rain_area))
-    assert level_thrust(WEAK, Wind(rain_mm_per_h=30))[0] == pytest.approx(reserve)
+    assert vehicle_in(WEAK, Wind(rain_mm_per_h=30)).held == pytest.approx(reserve)
     most = np.sqrt(reserve / (0.5 * 1.225 * WEAK.drag_area)) - 3.0  # gusts of σ = 1 m/s
     assert why_grounded(WEAK, Wind((0, most - 1e-6), rain_mm_per_h=30), 30.0) == ()
     assert why_grounded(WEAK, Wind((0, most + 1e-6), rain_mm_per_h=30), 30.0)[0].startswith("gusts: ")

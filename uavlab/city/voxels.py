@@ -52,7 +52,7 @@ def put_clearance(occupied, cell, clearance):
 
 @compiled
 def least_kept(min_clearance, cell):
-    """The clearance [m] from which on a centre keeps one that is asked for, to rounding; none is that of an obstacle."""
+    """The clearance [m] from which on one that is asked for is kept, to rounding; that of an obstacle never is."""
     return max(min_clearance - 1e-9 * cell, TINY) if min_clearance > 0 else TINY
 
 

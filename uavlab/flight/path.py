@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
+from uavlab.compiled import compiled
 from uavlab.route import Route
 from uavlab.spline.curve import BANK
 from uavlab.vehicle import GRAVITY, UAV
-from uavlab.weather import ground_speed_held, rain_force, wind_drag
-from uavlab.weather.envelope import CREEP
+from uavlab.weather import rain_force
+from uavlab.weather.envelope import CREEP, CRUISE, speed_over_ground, steady_air_speed
 from uavlab.weather.wind import Wind
 
 TURN_JUMP = 1.0
@@ -36,7 +38,8 @@ class Path(NamedTuple):
 
 def constant_speed(route: Route, speed: float) -> Path:
     """The same speed all the way."""
-    return Path(*geometry(route), np.full(len(route.points), speed), np.full(len(route.points) - 1, speed), BRAKING)
+    points = without_standing(route)
+    return Path(points, *legs_of(points), np.full(len(points), speed), np.full(len(points) - 1, speed), BRAKING)
 
 
 def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float | np.ndarray) -> Path:
@@ -45,41 +48,96 @@ def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float | np.ndarray)
     Asked is one speed, or one for each leg. Half of what the rotors have left beside weight, rain and mean wind is for
     turns, half for gusts; it may bank by 30° at most.
     """
-    points, distance, direction = geometry(route)
-    mass = uav.weight / GRAVITY
-    held, pushed = level_thrust(uav, wind)
-    agility = max(min(GRAVITY * np.tan(BANK), 0.5 * (held - pushed) / mass), LEAST_AGILITY)
-    held_there = ground_speed_held(
-        uav, direction, wind.mean, rain_mm_per_h=wind.rain_mm_per_h, air_density=wind.air_density
+    points = without_standing(route)
+    asked = np.broadcast_to(np.asarray(speed, dtype=float), len(points) - 1).copy()
+    return plan(points, asked, np.array(wind.mean), vehicle_in(uav, wind))
+
+
+class Vehicle(NamedTuple):
+    """What a plan has to know of a vehicle in an air density and in rain."""
+
+    mass: float  # [kg]
+    held: float  # what its rotors can pull sideways beside weight and rain [N]
+    drag: float  # ½ ρ C S [kg/m]
+    fastest: float  # through the air, at which a flight is planned [m/s]
+    climb: float  # greatest speed upwards [m/s]
+    sink: float  # and down
+
+
+def vehicle_in(uav: UAV, wind: Wind) -> Vehicle:
+    """The vehicle in a wind's rain and air."""
+    rain = float(rain_force(wind.rain_mm_per_h, uav.rain_area))
+    return Vehicle(
+        uav.weight / GRAVITY,
+        float(uav.horizontal_reserve(rain)),
+        0.5 * wind.air_density * uav.drag_area,
+        steady_air_speed(uav, rain, wind.air_density, CRUISE),
+        uav.climb_speed,
+        uav.sink_speed,
     )
-    on_legs = np.clip(held_there, CREEP, np.maximum(speed, CREEP))
-    at_points = np.full(len(points), CREEP)
-    turn = np.arccos(np.clip((direction[:-1] * direction[1:]).sum(axis=1), -1.0, 1.0))
-    apart = (np.diff(distance)[:-1] + np.diff(distance)[1:]) / 2
-    with np.errstate(divide="ignore"):
-        smooth = np.sqrt(agility * apart / turn)
-        sharp = TURN_JUMP / (2 * np.sin(turn / 2))
-    at_points[1:-1] = np.maximum(np.min([on_legs[:-1], on_legs[1:], smooth, sharp], axis=0), CREEP)
+
+
+@compiled
+def plan(points, asked, wind, vehicle):
+    """A path over points (N, 3), no faster than asked (N − 1,), in a mean wind (3,); its legs have lengths above 0."""
+    distance, direction = legs_of(points)
+    legs = len(direction)
+    agility = agility_in(wind, vehicle)
+    on_legs, at_points = np.empty(legs), np.full(legs + 1, CREEP)
+    for leg in range(legs):
+        held = speed_over_ground(direction[leg], wind, vehicle.fastest, vehicle.climb, vehicle.sink)
+        on_legs[leg] = max(min(held, max(asked[leg], CREEP)), CREEP)
+    for n in range(1, legs):
+        along = 0.0
+        for a in range(3):
+            along += direction[n - 1, a] * direction[n, a]
+        turn = math.acos(min(max(along, -1.0), 1.0))
+        apart = (distance[n] - distance[n - 1] + distance[n + 1] - distance[n]) / 2
+        fastest = min(on_legs[n - 1], on_legs[n])
+        if turn > 0.0:
+            fastest = min(fastest, math.sqrt(agility * apart / turn), TURN_JUMP / (2 * math.sin(turn / 2)))
+        at_points[n] = max(fastest, CREEP)
     braking = min(BRAKING, agility)
-    return Path(points, distance, direction, within_braking(at_points, distance, braking), on_legs, braking)
+    brake(at_points, distance, braking)
+    return Path(points, distance, direction, at_points, on_legs, braking)
 
 
-def within_braking(at_points: np.ndarray, distance: np.ndarray, braking: float) -> np.ndarray:
-    """Speeds that can be reached from those before and braked to those after, however short the legs."""
-    gained = 2 * braking * distance
-    squared = np.minimum.accumulate(at_points**2 - gained) + gained
-    squared = np.minimum.accumulate((squared + gained)[::-1])[::-1] - gained
-    return np.clip(np.sqrt(np.maximum(squared, 0.0)), CREEP, at_points)
+@compiled
+def legs_of(points):
+    """Distance of each point along a line (N,) [m], and the directions of its legs (N − 1, 3)."""
+    distance, direction = np.zeros(len(points)), np.empty((len(points) - 1, 3))
+    for leg in range(len(direction)):
+        squared = 0.0
+        for a in range(3):
+            direction[leg, a] = points[leg + 1, a] - points[leg, a]
+            squared += direction[leg, a] ** 2
+        length = math.sqrt(squared)
+        distance[leg + 1] = distance[leg] + length
+        for a in range(3):
+            direction[leg, a] /= length
+    return distance, direction
 
 
-def geometry(route: Route) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points, distances and directions of a route, without legs of no length."""
-    flown = Route(route.points[np.concatenate([[True], route.leg_lengths > 0])])
-    return flown.points, flown.distance, np.diff(flown.points, axis=0) / flown.leg_lengths[:, None]
+@compiled
+def agility_in(wind, vehicle):
+    """Acceleration for turns [m/s²]: half of what the thrust holds beside the mean wind's drag in hover."""
+    pushed = vehicle.drag * (wind[0] ** 2 + wind[1] ** 2 + wind[2] ** 2)
+    return max(min(GRAVITY * math.tan(BANK), 0.5 * (vehicle.held - pushed) / vehicle.mass), LEAST_AGILITY)
 
 
-def level_thrust(uav: UAV, wind: Wind) -> tuple[float, float]:
-    """What rotors can pull sideways beside weight and rain, and what the mean wind pushes while hovering [N]."""
-    held = float(uav.horizontal_reserve(rain_force(wind.rain_mm_per_h, uav.rain_area)))
-    drag = wind_drag(wind.mean, (0.0, 0.0, 0.0), uav.drag_area, air_density=wind.air_density)
-    return held, float(np.linalg.norm(drag))
+@compiled
+def brake(at_points, distance, braking):
+    """Lower speeds to those that can be reached from those before and braked to those after, however short the legs."""
+    last = len(at_points) - 1
+    squared = at_points**2
+    for n in range(1, last + 1):
+        squared[n] = min(squared[n], squared[n - 1] + 2 * braking * (distance[n] - distance[n - 1]))
+    for n in range(last - 1, -1, -1):
+        squared[n] = min(squared[n], squared[n + 1] + 2 * braking * (distance[n + 1] - distance[n]))
+    for n in range(last + 1):
+        at_points[n] = min(max(math.sqrt(max(squared[n], 0.0)), CREEP), at_points[n])
+
+
+def without_standing(route: Route) -> np.ndarray:
+    """The points (N, 3) of a route without legs of no length."""
+    return route.points[np.concatenate([[True], route.leg_lengths > 0])]

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.city.bounds import Bounds, bounds_of, keeps
+from uavlab.city.bounds import bounds_of, keeps
 from uavlab.city.segments import ROUNDING, distance_to_box
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled

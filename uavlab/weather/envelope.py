@@ -7,10 +7,13 @@ the envelope when it stays below all three.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
+from uavlab.compiled import compiled
 from uavlab.vehicle import UAV
 from uavlab.weather.forces import GUST_FACTOR, SAFETY_FACTOR, STANDARD_AIR, Weather, lift_margin, rain_force
 
@@ -293,12 +296,30 @@ def ground_speed_held(
     mean, along_it = np.array(checks.three("wind", wind)), checks.array("direction", direction, ..., 3)
     rain = float(rain_force(checks.number("rain_mm_per_h", rain_mm_per_h), uav.rain_area))
     fastest = air_speed_held(uav, rain, air_density=air_density, share=share)
-    along = along_it @ mean
-    across = np.sqrt(np.maximum((mean**2).sum() - along**2, 0.0))
-    level = np.where(across < fastest, along + np.sqrt(np.maximum(fastest**2 - across**2, 0.0)), -np.inf)
-    with np.errstate(divide="ignore"):
-        vertical = np.where(along_it[..., 2] > 0, uav.climb_speed, uav.sink_speed) / np.abs(along_it[..., 2])
-    return np.minimum(level, vertical)
+    ways = np.ascontiguousarray(along_it.reshape(-1, 3))
+    return speeds_over_ground(ways, mean, fastest, uav.climb_speed, uav.sink_speed).reshape(along_it.shape[:-1])
+
+
+@compiled
+def speeds_over_ground(directions, wind, fastest, climb, sink):
+    """`speed_over_ground` along each of the directions (M, 3)."""
+    speeds = np.empty(len(directions))
+    for m in range(len(directions)):
+        speeds[m] = speed_over_ground(directions[m], wind, fastest, climb, sink)
+    return speeds
+
+
+@compiled
+def speed_over_ground(direction, wind, fastest, climb, sink):
+    """The wind triangle along one direction (3,) at an air speed, and no faster up and down than that [m/s]."""
+    along = direction[0] * wind[0] + direction[1] * wind[1] + direction[2] * wind[2]
+    across = math.sqrt(max(wind[0] ** 2 + wind[1] ** 2 + wind[2] ** 2 - along**2, 0.0))
+    if across >= fastest:
+        return -np.inf
+    level = along + math.sqrt(max(fastest**2 - across**2, 0.0))
+    if direction[2] == 0.0:
+        return level
+    return min(level, (climb if direction[2] > 0 else sink) / abs(direction[2]))
 
 
 def grounded_by(
