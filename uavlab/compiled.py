@@ -18,6 +18,7 @@ from typing import Any, TypeVar
 
 try:
     import numba
+    import numba.extending
     from numba.core import config
     from numba.core.caching import FunctionCache
 except ImportError:
@@ -42,6 +43,11 @@ def compiled(function: F) -> F:
     discard_stale(Path(dispatcher.stats.cache_path))
     dispatcher._cache = MendingCache(function)
     return dispatcher
+
+
+def compilable(function: F) -> F:
+    """A formula for numbers and arrays alike: NumPy's where Python calls it, compiled with what calls it there."""
+    return function if numba is None else numba.extending.register_jitable(function)
 
 
 class MendingCache(FunctionCache):

@@ -7,6 +7,7 @@ import numpy.typing as npt
 from scipy.special import log_ndtr
 
 from uavlab import checks
+from uavlab.compiled import compilable
 
 
 def crossing_rate(margin: npt.ArrayLike, sigma: npt.ArrayLike, natural_frequency: float = 1.0) -> np.ndarray:
@@ -54,8 +55,13 @@ def crossing_rate(margin: npt.ArrayLike, sigma: npt.ArrayLike, natural_frequency
     checks.finite("margin", margin)
     checks.positive("sigma", sigma)
     natural_frequency = checks.positive_number("natural_frequency", natural_frequency)
-    z = np.asarray(margin, dtype=float) / np.asarray(sigma, dtype=float)
-    return natural_frequency / (2 * np.pi) * np.exp(-0.5 * z**2)
+    return rate_at(np.asarray(margin, dtype=float), np.asarray(sigma, dtype=float), natural_frequency)
+
+
+@compilable
+def rate_at(margin, sigma, natural_frequency):
+    """`crossing_rate` of arguments that are right."""
+    return natural_frequency / (2 * np.pi) * np.exp(-0.5 * (margin / sigma) ** 2)
 
 
 def collision_probability(

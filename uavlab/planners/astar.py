@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.city import City
-from uavlab.compiled import compiled
+from uavlab.compiled import compilable, compiled
 from uavlab.planners.grid import (
     BOXES,
     HEURISTICS,
@@ -229,13 +229,18 @@ def penalty_zone(city: City, safe_distance: npt.ArrayLike, *, penalty: npt.Array
         if values.shape not in ((), city.shape):
             raise ValueError(f"{name} must be one number or have the city's shape {city.shape}, got {values.shape}")
     if checks.one_of("zone", zone, ("ball", "ring")) == "ball":
-        near = city.clearance < distance - 1e-9 * city.cell
-    else:
-        radii = np.clip(np.ceil(distance / city.cell - 0.5 - 1e-9), 1, max(city.shape)).astype(int)
-        near = np.zeros(city.shape, dtype=bool)
-        for radius in np.unique(radii):
-            near |= (radii == radius) & ring_meets_obstacle(city.occupied, int(radius))
+        return price_in_zone(city.clearance, distance, weight, city.cell)
+    radii = np.clip(np.ceil(distance / city.cell - 0.5 - 1e-9), 1, max(city.shape)).astype(int)
+    near = np.zeros(city.shape, dtype=bool)
+    for radius in np.unique(radii):
+        near |= (radii == radius) & ring_meets_obstacle(city.occupied, int(radius))
     return 1.0 + weight * near
+
+
+@compilable
+def price_in_zone(clearance, safe_distance, penalty, cell):
+    """1 + ω·O_risk by the distance to the nearest surface."""
+    return 1.0 + penalty * (clearance < safe_distance - 1e-9 * cell)
 
 
 def ring_meets_obstacle(occupied: np.ndarray, radius: int) -> np.ndarray:

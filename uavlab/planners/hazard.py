@@ -17,7 +17,8 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.extent import locked
 from uavlab.city.kept import kept_for_city
-from uavlab.offsets import crossing_rate
+from uavlab.compiled import compilable
+from uavlab.offsets.exposure import rate_at
 from uavlab.planners.astar import cheapest_route
 from uavlab.planners.question import Airspace, endpoints, timed
 from uavlab.planners.shortcut import shortcut
@@ -105,8 +106,14 @@ def hazard_price(
 def cached_price(
     city: City, sigma: float, radius: float, mean_offset: tuple[float, ...], crash_price: float
 ) -> np.ndarray:
-    margin = city.clearance_along(mean_offset, at_most=radius + NO_HAZARD * sigma) - radius
-    return locked(1.0 + crash_price * crossing_rate(np.maximum(margin, 0.0), sigma))
+    clearance = city.clearance_along(mean_offset, at_most=radius + NO_HAZARD * sigma)
+    return locked(price_at(clearance, sigma, radius, crash_price))
+
+
+@compilable
+def price_at(clearance, sigma, radius, crash_price):
+    """Of a metre at a clearance [m], at most NO_HAZARD σ from touching."""
+    return 1.0 + crash_price * rate_at(np.maximum(clearance - radius, 0.0), sigma, 1.0)
 
 
 def hazard_astar(

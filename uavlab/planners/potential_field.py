@@ -16,7 +16,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.voxels import is_free_line
-from uavlab.compiled import compiled
+from uavlab.compiled import compilable, compiled
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around
 from uavlab.planners.question import Airspace, endpoints, timed
 from uavlab.route import Route
@@ -291,7 +291,13 @@ def repulsion(distance: npt.ArrayLike, push: float, reach: float, *, safe_distan
     checks.positive("distance", distances)
     push, reach = checks.positive_number("push", push), checks.positive_number("reach", reach)
     end = reach if safe_distance is None else checks.positive_number("safe_distance", safe_distance)
-    return np.where(distances <= end, push * (1 / distances - 1 / reach) / distances**2, 0.0)
+    return push_at(distances, push, reach, end)
+
+
+@compilable
+def push_at(distance, push, reach, end):
+    """`repulsion` of arguments that are right, up to the distance `end`."""
+    return np.where(distance <= end, push * (1 / distance - 1 / reach) / distance**2, 0.0)
 
 
 @compiled

@@ -21,8 +21,9 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.extent import locked
 from uavlab.city.kept import kept_for_city
+from uavlab.compiled import compilable
 from uavlab.planners.astar import cheapest_route, penalty_zone
-from uavlab.planners.potential_field import repulsion
+from uavlab.planners.potential_field import push_at
 from uavlab.planners.question import Airspace, checked_price, endpoints, nearest_allowed, timed
 from uavlab.resilience import gust_force, kind_and_speed, load_class, payload_of, resilience_level, safe_distance
 from uavlab.route import Route
@@ -417,9 +418,15 @@ def cached_price(
     widened = along < now.safe_distance - 1e-9 * city.cell
     reach = now.safe_distance + np.subtract(city.clearance, along, out=np.zeros(city.shape), where=widened)
     near = np.minimum(city.clearance, reach)
-    pushed = repulsion(np.maximum(near, city.cell / 2), now.safe_distance**3 / 4, now.safe_distance)
     blown = np.asarray(now.push)
     if now.wind is not None:
         blown = now.push * city.towards_wall(now.wind) / max(float(np.linalg.norm(now.wind)), 1e-9)
-    omega = penalty * (1 + pushed + force_weight * blown + load_weight * now.load_ratio)
+    omega = penalty * forces_at(near, now.safe_distance, city.cell, force_weight * blown, load_weight * now.load_ratio)
     return locked(penalty_zone(city, reach, penalty=omega, zone=zone))
+
+
+@compilable
+def forces_at(clearance, safe_distance, cell, blown, loaded):
+    """(1 + |F_rep| + θ_F·max(0, −F_dist·n) + θ_G·λ)/F_tra at a clearance [m], that of half a cell at the least."""
+    away = np.maximum(clearance, cell / 2)
+    return 1 + push_at(away, safe_distance**3 / 4, safe_distance, safe_distance) + blown + loaded
