@@ -6,13 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
-
-BASIS = np.array([[-1.0, 3.0, -3.0, 1.0], [3.0, -6.0, 3.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [1.0, 4.0, 1.0, 0.0]]) / 6.0
-"""From the powers of t (rows: t³, t², t, 1) to the weights of four control points (columns)."""
-
-POWERS = np.array([[3, 2, 1, 0], [2, 1, 0, 0], [1, 0, 0, 0]])
-FACTORS = np.array([[1, 1, 1, 1], [3, 2, 1, 0], [6, 2, 0, 0]])
-"""Of t³, t², t, 1 and of their first and second derivatives."""
+from uavlab.spline.sampling import BASIS, FACTORS, POWERS, mirrored
 
 ENDS = ("phantom", "clamped", "none")
 
@@ -108,7 +102,8 @@ def with_ends(points: np.ndarray, ends: str) -> np.ndarray:
     """Control points with those that hold the curve to its ends."""
     first, last = points[..., :1, :], points[..., -1:, :]
     if ends == "phantom":
-        return np.concatenate([2 * first - points[..., 1:2, :], points, 2 * last - points[..., -2:-1, :]], axis=-2)
+        phantoms = mirrored(first, points[..., 1:2, :]), mirrored(last, points[..., -2:-1, :])
+        return np.concatenate([phantoms[0], points, phantoms[1]], axis=-2)
     if ends == "clamped":
         return np.concatenate([first, first, points, last, last], axis=-2)
     return points

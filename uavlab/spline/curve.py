@@ -12,11 +12,9 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.route import PROMISES, Route, check_promises, promises_of
-from uavlab.spline.basis import BASIS, FACTORS, POWERS, checked_count, checked_derivative, with_ends
+from uavlab.spline.basis import checked_count, checked_derivative, with_ends
+from uavlab.spline.sampling import AT_REST, points_at, sagittas, steps_on
 from uavlab.vehicle import GRAVITY
-
-AT_REST = 1e-9
-"""A curve that runs fewer metres than this per segment stands still."""
 
 CORNER = 1e-4
 """Where it stands still and its direction changes by more than this [rad], it has a corner; less is rounding."""
@@ -224,11 +222,7 @@ class Curve:
 
         Its derivative is a mean of three legs of the polygon, so it never runs faster than the longest of them.
         """
-        legs = np.linalg.norm(np.diff(with_ends(self.control, self.ends), axis=0), axis=1)
-        fastest = np.max([legs[:-2], legs[1:-1], legs[2:]], axis=0)
-        parts = np.maximum(np.ceil(fastest / self.step).astype(int), 1)
-        inner = [i + np.arange(count) / count for i, count in enumerate(parts)]
-        return np.concatenate([*inner, [float(len(parts))]])
+        return steps_on(with_ends(self.control, self.ends), self.step)
 
     def at(self, parameter: npt.ArrayLike, derivative: int = 0) -> np.ndarray:
         """Points at parameters, or derivatives by the parameter there.
@@ -267,12 +261,7 @@ class Curve:
         where = checks.numbers("parameter", parameter)
         derivative = checked_derivative(derivative)
         checks.within("parameter", where, 0.0, len(padded) - 3, "(segments)")
-        segment = np.minimum(where.astype(int), len(padded) - 4)
-        weights = FACTORS[derivative] * (where - segment)[..., None] ** POWERS[derivative] @ BASIS
-        if derivative:  # of the legs, so that where points stand together they add exactly nothing
-            padded, weights = np.diff(padded, axis=0), -np.cumsum(weights, axis=-1)[..., :3]
-        windows = padded[segment[..., None] + np.arange(weights.shape[-1])]
-        return (weights[..., None] * windows).sum(axis=-2)
+        return points_at(padded, where.ravel(), derivative).reshape(*where.shape, -1)
 
     @cached_property
     def points(self) -> np.ndarray:
@@ -358,17 +347,7 @@ class Curve:
 
         Where it runs along a line without turning back only the part of r″ across the line counts.
         """
-        line = np.diff(self.points, axis=0)
-        along = line / np.maximum(np.linalg.norm(line, axis=1), AT_REST)[:, None]
-        ends = [slice(None, -1), slice(1, None)]  # r″ is linear in between
-        ahead = [(self.velocity[end] * along).sum(axis=1) for end in ends]
-        faster = [(self.acceleration[end] * along).sum(axis=1) for end in ends]
-        onward = (np.minimum(*ahead) >= -AT_REST) & ((faster[0] >= 0) | (faster[1] <= 0))
-        size = [
-            np.linalg.norm(self.acceleration[end] - np.where(onward, part, 0.0)[:, None] * along, axis=1)
-            for end, part in zip(ends, faster, strict=True)
-        ]
-        return np.maximum(*size) * np.diff(self.parameter) ** 2 / 8
+        return sagittas(self.points, self.velocity, self.acceleration, self.parameter)
 
     def least_distances(self, city: City, at_most: float = np.inf) -> np.ndarray:
         """A lower bound of the distance to the obstacles between each two of its points.
