@@ -21,8 +21,8 @@ from uavlab.city import City, table1_city
 from uavlab.flight import PERFECT_GPS, Autopilot, Gps, monte_carlo
 from uavlab.flight.motion import PREVIEW
 from uavlab.flight.reference import advance, velocity_at
-from uavlab.flight.simulation import TIME_STEP, setup_of, start_of
-from uavlab.flight.state import Course
+from uavlab.flight.simulation import TIME_STEP, setup_of
+from uavlab.flight.state import Course, start_of
 from uavlab.planners import astar, repare
 from uavlab.resilience import Controller
 from uavlab.route import Route

@@ -12,7 +12,8 @@ from uavlab.flight import OffsetProcess, fly, offset_sigma
 from uavlab.flight.models import air_of, passing_speed
 from uavlab.flight.motion import next_gust
 from uavlab.flight.path import planned_speed
-from uavlab.flight.simulation import setup_of, start_of
+from uavlab.flight.simulation import setup_of
+from uavlab.flight.state import start_of
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route
 from uavlab.vehicle import GRAVITY, LIGHT_QUADROTOR

@@ -9,7 +9,8 @@ from places import EXACT, SKY, beside_wall, standard_errors_apart, straight
 
 from uavlab.city import City
 from uavlab.flight import PERFECT_GPS, Autopilot, Gps, OffsetProcess, crash_rate, fly, monte_carlo
-from uavlab.flight.simulation import route_clearance, setup_of, start_of
+from uavlab.flight.simulation import route_clearance, setup_of
+from uavlab.flight.state import start_of
 from uavlab.offsets import collision_probability, offset_paths, safety_domain
 from uavlab.planners import astar, hazard_astar, repare
 from uavlab.resilience import ADVANCED, BASIC, ConditionCheck, Controller, Monitor, safe_distance

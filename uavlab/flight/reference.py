@@ -9,6 +9,9 @@ from uavlab.compiled import compiled
 LEASH = 4.0
 """From so far on the reference waits for the UAV [m]; at twice as far it stands still."""
 
+PATIENCE, PAUSE = 3.0, 60.0
+"""A flight is out of time after so many times the planned duration, and so many seconds more."""
+
 
 @compiled
 def patience(state):
@@ -64,6 +67,12 @@ def velocity_at(path, state, beyond, velocity):
 def squared_distance(one, other):
     x, y, z = one[0] - other[0], one[1] - other[1], one[2] - other[2]
     return x * x + y * y + z * z
+
+
+@compiled
+def most_steps(path, pace, dt):
+    """After how many steps a flight is out of time."""
+    return int(PATIENCE * steps_to_goal(path, pace, dt) + PAUSE / dt)
 
 
 @compiled

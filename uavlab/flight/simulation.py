@@ -17,7 +17,7 @@ from uavlab.flight.autopilot import AUTOPILOT, PERFECT_GPS, Autopilot
 from uavlab.flight.disturbance import OffsetProcess
 from uavlab.flight.models import Model, model_of
 from uavlab.flight.path import Path, constant_speed, planned_speed
-from uavlab.flight.reference import steps_to_goal
+from uavlab.flight.reference import most_steps
 from uavlab.flight.results import Energy, Flight, Flights
 from uavlab.flight.state import (
     ARRIVED,
@@ -31,6 +31,7 @@ from uavlab.flight.state import (
     Course,
     Obstacles,
     State,
+    start_of,
 )
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route, as_route
@@ -60,9 +61,6 @@ MOST_FLIGHTS = 1_000_000
 
 SLOWEST_SHARE = 0.01
 """Of the cruise speed that a controller may take."""
-
-PATIENCE, PAUSE = 3.0, 60.0
-"""A flight is out of time after so many times the planned duration, and so many seconds more."""
 
 BATCH = 100
 
@@ -368,10 +366,10 @@ def flown(setup: Setup, generator: np.random.Generator, every: int) -> Flight:
     path = setup.path
     model = setup.model(now, controller, path)
     state = start_of(path.points[0])
-    most = planned = steps_to_goal(path, model.pace, dt)
+    longest = most_steps(path, model.pace, dt)
+    most = longest + 1
     if monitor is not None or callable(setup.disturbance):
         most = max(round(autopilot.interval / dt), 1)
-    longest = PATIENCE * planned + PAUSE / dt
     logs, ending = [], ""
     while True:
         log = np.empty((most // every + 2, len(COLUMNS)))
@@ -433,26 +431,6 @@ def energy_of(state: State, uav: UAV, start: np.ndarray) -> Energy:
     climb = uav.weight * float(state.position[2] - start[2])
     motion = uav.weight / GRAVITY * float(state.velocity @ state.velocity) / 2
     return Energy(battery, uav.drive_efficiency, induced, profile, drag, climb, motion, rain, wind, braked)
-
-
-def start_of(start: np.ndarray) -> State:
-    """At the start of the route (3,), at rest, in still air."""
-    position = start.copy()
-    return State(
-        position=position,
-        before=position.copy(),
-        velocity=np.zeros(3),
-        target=position.copy(),
-        seen_position=position.copy(),
-        seen_velocity=np.zeros(3),
-        lags=np.zeros((3, 2)),
-        gust=np.zeros(3),
-        gps_error=np.zeros(3),
-        heading=np.array([1.0, 0.0]),
-        way=np.zeros(2),
-        sums=np.array([np.inf, np.inf] + [0.0] * 7),
-        counts=np.zeros(2, dtype=np.int64),
-    )
 
 
 def behind(state: State) -> float:

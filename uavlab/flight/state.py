@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uavlab.city.segments import Runs
+from uavlab.compiled import compiled
 from uavlab.flight.path import Path
 
 COLUMNS = ("time", "x", "y", "z", "x_ref", "y_ref", "z_ref", "along", "across", "up", "thrust", "speed")
@@ -101,3 +102,14 @@ class State(NamedTuple):
     way: np.ndarray  # (2,) distance along the route [m], its leg
     sums: np.ndarray  # (9,) see LEAST to BRAKED
     counts: np.ndarray  # (2,) steps made, rows logged
+
+
+@compiled
+def start_of(start):
+    """At the start of the route (3,), at rest, in still air."""
+    sums = np.zeros(9)
+    sums[LEAST] = sums[NOW] = np.inf
+    return State(
+        start.copy(), start.copy(), np.zeros(3), start.copy(), start.copy(), np.zeros(3), np.zeros((3, 2)), np.zeros(3),
+        np.zeros(3), np.array([1.0, 0.0]), np.zeros(2), sums, np.zeros(2, np.int64),
+    )  # fmt: skip

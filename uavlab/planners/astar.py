@@ -154,20 +154,16 @@ def cheapest_route(
     """
     g = sparse_array(np.empty, city.occupied.size, np.float64)
     parent = sparse_array(np.zeros, city.occupied.size, np.uint8)
-    backwards = prices is not None and not as_printed and prices.flat[source] < prices.flat[target]
-    first, last = (target, source) if backwards else (source, target)
     weight = (1.0 if as_printed else cheapest) * TIE_BREAK
-    query = Query(blocked, as_printed, HEURISTICS[heuristic], weight, first, last)
-    expanded, order = search(query, prices, Tree(g, parent), open_list(city.occupied.size), record)
+    query = Query(blocked, as_printed, HEURISTICS[heuristic], weight, source, target)
+    nodes, cost, expanded, order = cheapest_nodes(query, prices, Tree(g, parent), open_list(city.occupied.size), record)
     info = {"expanded": expanded, "heuristic": heuristic}
     if record:
-        info["order"] = order[:expanded]
-    if parent[last] == UNSEEN:
+        info["order"] = order
+    if len(nodes) == 0:
         nowhere = no_way(city, source, target, int(np.count_nonzero(parent)))
         return replace(nowhere, info=nowhere.info | info)
-    nodes = trace(parent, first, last, blocked)
-    cost = float(g[last]) * city.cell
-    return Route(city.center_of(city.index_of(nodes[::-1] if backwards else nodes)), "A*", cost=cost, info=info)
+    return Route(city.center_of(city.index_of(nodes)), "A*", cost=cost * city.cell, info=info)
 
 
 def no_way(city: City, source: int, target: int, reach: int) -> Route:
@@ -274,6 +270,24 @@ class Tree(NamedTuple):
 
     g: np.ndarray  # cost so far
     parent: np.ndarray
+
+
+@compiled
+def cheapest_nodes(query, price, tree, waiting, record):
+    """Nodes of the cheapest route (none if there is none), its cost [cells], how many were expanded, and which.
+
+    The search begins at the end where the price is higher, and so leaves a zone at once.
+    """
+    backwards = False
+    if price is not None and not query.as_printed:
+        backwards = price.ravel()[query.start] < price.ravel()[query.goal]
+    first, last = (query.goal, query.start) if backwards else (query.start, query.goal)
+    turned = Query(query.blocked, query.as_printed, query.heuristic, query.weight, first, last)
+    expanded, order = search(turned, price, tree, waiting, record)
+    if tree.parent[last] == UNSEEN:
+        return np.empty(0, np.int64), np.inf, expanded, order[:expanded]
+    nodes = trace(tree.parent, first, last, query.blocked)
+    return nodes[::-1].copy() if backwards else nodes, tree.g[last], expanded, order[:expanded]
 
 
 @compiled

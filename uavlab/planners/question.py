@@ -7,6 +7,7 @@ voxel above it that is high enough, and the vertical legs are added to what it f
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -17,6 +18,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.extent import locked
+from uavlab.compiled import compiled
 from uavlab.risk.model import high_enough
 from uavlab.route import PROMISES, Route
 
@@ -182,18 +184,33 @@ def checked_position(city: City, point: npt.ArrayLike, argument: str) -> np.ndar
 
 def nearest_allowed(city: City, position: np.ndarray, allowed: np.ndarray) -> str:
     """Words for the centre nearest to a position among allowed voxels (nx, ny, nz), looked for in boxes that grow."""
-    index = city.cell_of(position)
+    node = nearest_node(~allowed, (position - city.origin) / city.cell)
+    if node < 0:
+        return "no voxel of the map is free"
+    return f"the nearest free point is {checks.show(city.center_of(city.index_of(node)))}"
+
+
+@compiled
+def nearest_node(blocked, point):
+    """The code of the free voxel whose centre is nearest to a point (3,) [cells], −1 if none is free.
+
+    Looked for in boxes around the point that grow until nothing outside of them can be nearer.
+    """
+    nx, ny, nz = blocked.shape
+    most = max(nx, ny, nz)
     radius = 4
     while True:
-        low, high = np.maximum(index - radius, 0), np.minimum(index + radius + 1, city.shape)
-        free = low + np.argwhere(allowed[low[0] : high[0], low[1] : high[1], low[2] : high[2]])
-        centers = city.center_of(free)
-        away = np.linalg.norm(centers - position, axis=1)
-        whole_map = (high - low == city.shape).all()
-        if away.min(initial=np.inf) < (np.inf if whole_map else radius * city.cell):
-            return f"the nearest free point is {checks.show(centers[away.argmin()])}"
-        if whole_map:
-            return "no voxel of the map is free"
+        least, nearest = np.inf, -1
+        for i in range(max(math.floor(point[0]) - radius, 0), min(math.floor(point[0]) + radius + 1, nx)):
+            for j in range(max(math.floor(point[1]) - radius, 0), min(math.floor(point[1]) + radius + 1, ny)):
+                for k in range(max(math.floor(point[2]) - radius, 0), min(math.floor(point[2]) + radius + 1, nz)):
+                    if not blocked[i, j, k]:
+                        x, y, z = i + 0.5 - point[0], j + 0.5 - point[1], k + 0.5 - point[2]
+                        squared = x * x + y * y + z * z
+                        if squared < least:
+                            least, nearest = squared, (i * ny + j) * nz + k
+        if least < radius * radius or radius > most:
+            return nearest
         radius *= 2
 
 

@@ -103,11 +103,8 @@ def shortcut(
         route, min_clearance=min_clearance, min_height=min_height, max_height=max_height, safe_height=safe_height
     )
     free = route.en_route
-    points = (free.points - city.origin) / city.cell
-    same = ROUNDING if prices is None else ROUNDING * float(prices.max())
     bounds = bounds_of(city, **promises)
-    lookback = len(points) if prices is None else LOOKBACK
-    kept, cost, leg = rounds(points, bounds, prices, cheapest, same, lookback)
+    kept, cost, leg = straightened(free.points, city.origin, city.cell, bounds, prices, cheapest)
     if leg:
         ends = f"{leg - 1} {checks.show(free.points[leg - 1])} and {leg} {checks.show(free.points[leg])}"
         raise ValueError(
@@ -136,11 +133,16 @@ def price_or_length(city: City, price: npt.ArrayLike | None) -> tuple[np.ndarray
 
 
 @compiled
-def rounds(points, bounds, prices, cheapest, same, lookback):
-    """The waypoints to keep (K,), what the way over them costs, and the end of the first leg that isn't free, or 0."""
+def straightened(points, origin, cell, bounds, price, cheapest):
+    """Which of the waypoints (N, 3) [m] to keep, (K,), what the way over them costs [cells], and the end of the first
+    leg that isn't free, or 0."""
+    points = (points - origin) / cell
+    same, lookback = ROUNDING, len(points)
+    if price is not None:
+        same, lookback = ROUNDING * price.max(), LOOKBACK
     kept = np.arange(len(points))
     while True:
-        best, parent = cheapest_subset(points[kept], bounds, prices, cheapest, same, lookback)
+        best, parent = cheapest_subset(points[kept], bounds, price, cheapest, same, lookback)
         for n in range(len(kept)):
             if best[n] == np.inf:
                 return kept, np.inf, n

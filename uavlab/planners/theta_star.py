@@ -23,7 +23,7 @@ from uavlab.planners.astar import COST_ROUNDING, no_way
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around, steps_of
 from uavlab.planners.heap import code_type, open_list, pop, push, sparse_array
 from uavlab.planners.question import Airspace, checked_price, endpoints, timed
-from uavlab.planners.shortcut import distance, line_price, shortcut
+from uavlab.planners.shortcut import distance, line_price, straightened
 from uavlab.route import Route
 
 WEIGHT = 1.15
@@ -131,23 +131,46 @@ def theta_star(
     )  # fmt: skip
     bounds = bounds_of(city, **airspace.promises)
     query = Query(airspace.blocked, bounds, cheapest, weight, ends.source, ends.target)
-    expanded = search(query, prices, tree, open_list(count))
+    nodes, cost, expanded = straight_nodes(query, prices, tree, open_list(count))
     info = {"expanded": expanded}
-    if tree.state[ends.target] == UNSEEN:
+    if len(nodes) == 0:
         nowhere = no_way(city, ends.source, ends.target, expanded)
         route = replace(nowhere, planner="Theta*", info=nowhere.info | info)
     else:
-        nodes = [ends.target]
-        while nodes[-1] != ends.source:
-            nodes.append(int(tree.parent[nodes[-1]]))
-        cost = float(tree.g[ends.target]) * city.cell
-        points = city.center_of(city.index_of(np.array(nodes[::-1])))
-        route = Route(points, "Theta*", cost=cost, info=info, **airspace.promises)
-    for step in TAUT_STEPS if taut and route.reached else ():
-        finer = replace(route, points=around_corners(route.points, step * city.cell))
-        route = shortcut(finer, city, price=prices)
-    route = replace(route, planner="Theta*")
+        points = city.center_of(city.index_of(nodes))
+        if taut:
+            points, cost = pulled_taut(points, city.origin, city.cell, bounds, prices, cheapest)
+        route = Route(points, "Theta*", cost=cost * city.cell, info=info, **airspace.promises)
     return timed(ends.added_to(route, prices, priced="" if price is None else "price"), began)
+
+
+@compiled
+def straight_nodes(query, price, tree, waiting):
+    """Both ends and where the route turns (nothing if there is none), its cost [cells], how many were expanded."""
+    expanded = search(query, price, tree, waiting)
+    if tree.state[query.goal] == UNSEEN:
+        return np.empty(0, np.int64), np.inf, expanded
+    count, node = 1, query.goal
+    while node != query.start:
+        node = tree.parent[node]
+        count += 1
+    nodes = np.empty(count, np.int64)
+    node = query.goal
+    for n in range(count - 1, -1, -1):
+        nodes[n] = node
+        node = tree.parent[node]
+    return nodes, tree.g[query.goal], expanded
+
+
+@compiled
+def pulled_taut(points, origin, cell, bounds, price, cheapest):
+    """The waypoints (N, 3) [m] pulled around corners, closer and closer, and what the way over them costs [cells]."""
+    cost = np.inf
+    for step in TAUT_STEPS:
+        points = around_corners(points, step * cell)
+        kept, cost, _ = straightened(points, origin, cell, bounds, price, cheapest)
+        points = points[kept]
+    return points, cost
 
 
 @compiled

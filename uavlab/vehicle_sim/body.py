@@ -14,7 +14,7 @@ from uavlab.city import City
 from uavlab.flight.autopilot import Autopilot
 from uavlab.flight.models import Model, model_of
 from uavlab.flight.path import Path, planned_speed
-from uavlab.flight.simulation import TIME_STEP, flown_by, start_of
+from uavlab.flight.simulation import TIME_STEP, flown_by
 from uavlab.flight.state import (
     ARRIVED,
     BATTERY,
@@ -27,6 +27,7 @@ from uavlab.flight.state import (
     Course,
     Obstacles,
     State,
+    start_of,
 )
 from uavlab.mission.corridor import floor_below, touchable
 from uavlab.route import Route
