@@ -270,7 +270,7 @@ class Route:
     @property
     def length(self) -> float:
         """Length of the whole route [m]."""
-        return float(self.leg_lengths.sum())
+        return float(np.cumsum(self.leg_lengths)[-1]) if len(self.points) > 1 else 0.0
 
     @property
     def distance(self) -> np.ndarray:

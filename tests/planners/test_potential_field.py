@@ -7,7 +7,7 @@ import pytest
 
 from uavlab.city import City
 from uavlab.planners import astar, penalty_zone, potential_field, potential_forces, repulsion
-from uavlab.planners.potential_field import Field, field_of, force, forces_at, walk_freely, walk_lattice
+from uavlab.planners.potential_field import Field, field_of, forces_at, put_forces, walk_freely, walk_lattice
 
 SETTINGS = [
     {"attraction": attraction, "obstacles": obstacles}
@@ -377,8 +377,10 @@ def test_compiled_code_and_python_agree(seed):
     field = field_of(city, goal, "conic", "voxels", 1.0, 2.0 * city.cell**2, 2.5 * city.cell)
     assert isinstance(field, Field)
     for point in np.random.default_rng(seed).uniform(*(city.bounds - city.origin), (20, 3)):
-        for compiled, plain in zip(force(field, point), force.py_func(field, point), strict=True):
-            assert compiled == pytest.approx(plain, rel=1e-12)
+        forces, plain_forces = np.empty((2, 3)), np.empty((2, 3))
+        potential = put_forces(field, point, *forces)
+        assert put_forces.py_func(field, point, *plain_forces) == pytest.approx(potential, rel=1e-12)
+        assert forces == pytest.approx(plain_forces, rel=1e-12)
     points = np.random.default_rng(seed).uniform(0, 1, (5, 3))
     for compiled, plain in zip(forces_at(field, points), forces_at.py_func(field, points), strict=True):
         assert compiled == pytest.approx(plain, rel=1e-12)

@@ -41,9 +41,14 @@ def put_clearance(occupied, cell, clearance):
         for j in range(ny):
             for k in range(nz):
                 clearance[i, j, k] = 0.0 if occupied[i, j, k] else np.inf
-    envelope_along_last_axis(clearance.transpose(1, 2, 0))
-    envelope_along_last_axis(clearance.transpose(0, 2, 1))
-    envelope_along_last_axis(clearance)
+    for j in range(ny):
+        for k in range(nz):
+            lower_envelope(clearance[:, j, k])
+    for i in range(nx):
+        for k in range(nz):
+            lower_envelope(clearance[i, :, k])
+        for j in range(ny):
+            lower_envelope(clearance[i, j])
     for i in range(nx):
         for j in range(ny):
             for k in range(nz):
@@ -54,13 +59,6 @@ def put_clearance(occupied, cell, clearance):
 def least_kept(min_clearance, cell):
     """The clearance [m] from which on one that is asked for is kept, to rounding; that of an obstacle never is."""
     return max(min_clearance - 1e-9 * cell, TINY) if min_clearance > 0 else TINY
-
-
-@compiled
-def envelope_along_last_axis(squared):
-    for i in range(squared.shape[0]):
-        for j in range(squared.shape[1]):
-            lower_envelope(squared[i, j])
 
 
 @compiled

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from uavlab.compiled import compiled
 from uavlab.flight.autopilot import Autopilot
 from uavlab.flight.disturbance import OffsetProcess, stepped
 from uavlab.flight.motion import drift_on, fly_on
 from uavlab.flight.path import Path
-from uavlab.flight.state import Air, Body, Course, Spring, State
+from uavlab.flight.state import OU, Air, Body, Course, Spring, State
 from uavlab.power import profile_share
 from uavlab.resilience import Controller
 from uavlab.vehicle import GRAVITY, UAV
@@ -89,11 +91,10 @@ def passing_speed(wind: Wind, path: Path, controller: Controller) -> float:
 
 def air_of(wind: Wind, air_speed: float, altitude: float, time_step: float) -> Air:
     """The wind for compiled code; the frame of Dryden gusts is that of the mean wind."""
-    frame, keep, enter, read = np.eye(3), np.zeros((3, 2, 2)), np.zeros((3, 2, 2)), np.zeros((3, 2))
     if wind.gusts == "ou":
-        share = np.exp(-time_step / wind.correlation)
-        keep[:, 0, 0], enter[:, 0, 0] = share, np.sqrt(1 - share**2)
-    elif wind.gusts == "dryden":
+        return air_with_memory(np.array(wind.mean), gust_deviations(wind, altitude), wind.correlation, time_step)
+    frame, keep, enter, read = np.eye(3), np.zeros((3, 2, 2)), np.zeros((3, 2, 2)), np.zeros((3, 2))
+    if wind.gusts == "dryden":
         east, north = np.array(wind.mean[:2]) / np.linalg.norm(wind.mean[:2])
         frame = np.array([[east, -north, 0.0], [north, east, 0.0], [0.0, 0.0, 1.0]])
         for axis, length in enumerate(dryden_parameters(altitude, wind.speed).scale_lengths):
@@ -110,3 +111,13 @@ def air_of(wind: Wind, air_speed: float, altitude: float, time_step: float) -> A
         read=read,
         every=max(round(wind.correlation / time_step), 1),
     )
+
+
+@compiled
+def air_with_memory(mean, deviation, correlation, time_step):
+    """Ornstein-Uhlenbeck gusts of σ (3,) [m/s] that forget with a correlation time [s], around a mean wind (3,)."""
+    keep, enter = np.zeros((3, 2, 2)), np.zeros((3, 2, 2))
+    share = math.exp(-time_step / correlation)
+    keep[:, 0, 0] = share
+    enter[:, 0, 0] = math.sqrt(1 - share**2)
+    return Air(mean, OU, np.eye(3), deviation, keep, enter, np.zeros((3, 2)), 1)

@@ -19,6 +19,7 @@ from uavlab.city.voxels import is_free_line
 from uavlab.compiled import compilable, compiled
 from uavlab.planners.grid import BOXES, LENGTHS, MOVES, blocked_around
 from uavlab.planners.question import Airspace, endpoints, timed
+from uavlab.planners.shortcut import distance
 from uavlab.route import Route
 
 ATTRACTIONS = ("conic", "quadratic")
@@ -158,8 +159,7 @@ def potential_field(
         info |= {"attraction": pulls, "repulsion": pushes}
     place = checks.show(points[-1])
     reason = REASONS[outcome].format(place=place, left=np.linalg.norm(points[-1] - aim), steps=max_steps)
-    length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
-    cost = np.inf if reason else length
+    cost = np.inf if reason else Route(points).length
     if reason:
         info["goal"] = np.asarray(goal, dtype=float)
     route = Route(points, "potential field", reached=not reason, reason=reason, cost=cost, info=info)
@@ -301,51 +301,68 @@ def push_at(distance, push, reach, end):
 
 
 @compiled
-def force(field, point):
-    """Attraction (3,), repulsion (3,) and potential at a point (3,) [m]."""
+def put_forces(field, point, pull, push):
+    """Write attraction (3,) and repulsion (3,) at a point (3,) [m]; their potential."""
     cell, reach = field.cell, field.reach
-    to_goal = field.goal - point
-    left = math.sqrt((to_goal**2).sum())
+    left = 0.0
+    for a in range(3):
+        pull[a] = field.goal[a] - point[a]
+        push[a] = 0.0
+        left += pull[a] * pull[a]
+    left = math.sqrt(left)
+    strength = field.pull
     if field.conic:
-        pull = to_goal * (field.pull / left) if left > 0 else to_goal
-        potential = field.pull * left
-    else:
-        pull = to_goal * field.pull
-        potential = 0.5 * field.pull * left * left
-    push = np.zeros(3)
+        strength = field.pull / left if left > 0 else 1.0
+    for a in range(3):
+        pull[a] *= strength
+    potential = field.pull * left if field.conic else 0.5 * field.pull * left * left
     pushed = 0.0
     nearest = reach
-    away = np.empty(3)
-    low, high = np.empty(3, np.int64), np.empty(3, np.int64)
-    for axis in range(3):
-        low[axis] = max(math.floor((point[axis] - reach) / cell), 0)
-        high[axis] = min(math.floor((point[axis] + reach) / cell) + 1, field.occupied.shape[axis])
-    for a in range(low[0], high[0]):
-        for b in range(low[1], high[1]):
-            for c in range(low[2], high[2]):
+    nx, ny, nz = field.occupied.shape
+    for a in range(max(math.floor((point[0] - reach) / cell), 0), min(math.floor((point[0] + reach) / cell) + 1, nx)):
+        x = point[0] - min(max(point[0], a * cell), (a + 1) * cell)  # from the voxel's nearest point
+        for b in range(
+            max(math.floor((point[1] - reach) / cell), 0), min(math.floor((point[1] + reach) / cell) + 1, ny)
+        ):
+            y = point[1] - min(max(point[1], b * cell), (b + 1) * cell)
+            for c in range(
+                max(math.floor((point[2] - reach) / cell), 0), min(math.floor((point[2] + reach) / cell) + 1, nz)
+            ):
                 if not field.occupied[a, b, c]:
                     continue
-                away[0] = point[0] - min(max(point[0], a * cell), (a + 1) * cell)  # from the voxel's nearest point
-                away[1] = point[1] - min(max(point[1], b * cell), (b + 1) * cell)
-                away[2] = point[2] - min(max(point[2], c * cell), (c + 1) * cell)
-                distance = max(math.sqrt((away**2).sum()), CLOSEST)
-                if distance >= nearest:
+                z = point[2] - min(max(point[2], c * cell), (c + 1) * cell)
+                apart = max(math.sqrt(x * x + y * y + z * z), CLOSEST)
+                if apart >= nearest:
                     continue
                 if field.nearest_only:
-                    nearest = distance
+                    nearest = apart
                     push[:] = 0.0
                     pushed = 0.0
-                push += away * (field.push * (1 / distance - 1 / reach) / distance**3)
-                pushed += 0.5 * field.push * (1 / distance - 1 / reach) ** 2
-    return pull, push, potential + pushed
+                size = field.push * (1 / apart - 1 / reach) / apart**3
+                push[0] += x * size
+                push[1] += y * size
+                push[2] += z * size
+                pushed += 0.5 * field.push * (1 / apart - 1 / reach) ** 2
+    return potential + pushed
+
+
+@compiled
+def put_resultant(field, point, pull, push, resultant):
+    """Write the sum of both forces (3,) at a point [m]; its size."""
+    put_forces(field, point, pull, push)
+    squared = 0.0
+    for a in range(3):
+        resultant[a] = pull[a] + push[a]
+        squared += resultant[a] * resultant[a]
+    return math.sqrt(squared)
 
 
 @compiled
 def forces_at(field, points):
-    """`force` at each of the points (M, 3) [m from the map's corner]."""
+    """Both forces at each of the points (M, 3) [m from the map's corner], and their potential."""
     pulls, pushes, potentials = np.empty((len(points), 3)), np.empty((len(points), 3)), np.empty(len(points))
     for m in range(len(points)):
-        pulls[m], pushes[m], potentials[m] = force(field, points[m])
+        potentials[m] = put_forces(field, points[m], pulls[m], pushes[m])
     return pulls, pushes, potentials
 
 
@@ -355,27 +372,31 @@ def walk_lattice(field, start, goal, most):
     nodes = np.empty((most + 1, 3), np.int64)
     nodes[0] = start
     seen = np.zeros(field.occupied.shape, np.bool_)
+    pull, push, resultant, here = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for n in range(most + 1):
-        here = nodes[n]
-        if (here == goal).all():
+        i, j, k = nodes[n]
+        if i == goal[0] and j == goal[1] and k == goal[2]:
             return nodes[: n + 1], ARRIVED
-        if seen[here[0], here[1], here[2]]:  # the force has no memory: it would go round for ever
+        if seen[i, j, k]:  # the force has no memory: it would go round for ever
             return nodes[: n + 1], CIRCLES
         if n == most:
             break
-        seen[here[0], here[1], here[2]] = True
-        pull, push, _ = force(field, (here + 0.5) * field.cell)
-        resultant = pull + push
-        around = blocked_around(field.closed, here[0], here[1], here[2])
-        best, most_along = -1, 1e-12 * math.sqrt((resultant**2).sum())
+        seen[i, j, k] = True
+        for a in range(3):
+            here[a] = (nodes[n, a] + 0.5) * field.cell
+        size = put_resultant(field, here, pull, push, resultant)
+        around = blocked_around(field.closed, i, j, k)
+        best, most_along = -1, 1e-12 * size
         for move in range(26):
             if not around & BOXES[move]:
-                along = (resultant * MOVES[move]).sum() / LENGTHS[move]
+                di, dj, dk = MOVES[move]
+                along = (resultant[0] * di + resultant[1] * dj + resultant[2] * dk) / LENGTHS[move]
                 if along > most_along * (1 + 1e-12):
                     best, most_along = move, along
         if best < 0:
             return nodes[: n + 1], TRAPPED
-        nodes[n + 1] = here + MOVES[best]
+        for a in range(3):
+            nodes[n + 1, a] = nodes[n, a] + MOVES[best, a]
     return nodes, GAVE_UP
 
 
@@ -384,32 +405,33 @@ def walk_freely(field, start, step, most):
     """Points (N, 3) from the start by steps along the force, and how it ended."""
     points = np.empty((most + 1, 3))
     points[0] = start
-    top = np.empty(3)
+    top, pull, push, resultant = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for axis in range(3):  # the border itself is outside
         top[axis] = (field.occupied.shape[axis] - 1e-6) * field.cell
     for n in range(most + 1):
         here = points[n]
-        if (here == field.goal).all():
+        if distance(here, field.goal) == 0.0:
             return points[: n + 1], ARRIVED
-        if n >= WINDOW and math.sqrt(((here - points[n - WINDOW]) ** 2).sum()) < 2 * step:
+        if n >= WINDOW and distance(here, points[n - WINDOW]) < 2 * step:
             return points[: n + 1], CIRCLES
         if n == most:
             break
-        if math.sqrt(((field.goal - here) ** 2).sum()) <= step:
+        if distance(here, field.goal) <= step:
             points[n + 1] = field.goal
         else:
-            pull, push, _ = force(field, here)
-            resultant = pull + push
+            put_resultant(field, here, pull, push, resultant)
             for axis in range(3):  # along the border of the map, where the force points out of it
                 if (here[axis] <= 0 and resultant[axis] < 0) or (here[axis] >= top[axis] and resultant[axis] > 0):
                     resultant[axis] = 0.0
-            size = math.sqrt((resultant**2).sum())
+            size = math.sqrt(resultant[0] ** 2 + resultant[1] ** 2 + resultant[2] ** 2)
             if size < 1e-9 * field.pull:
                 return points[: n + 1], TRAPPED
             for axis in range(3):
                 points[n + 1, axis] = min(max(here[axis] + resultant[axis] * (step / size), 0.0), top[axis])
-        if not is_free_line(field.occupied, here / field.cell, points[n + 1] / field.cell):
+        for axis in range(3):
+            pull[axis], push[axis] = here[axis] / field.cell, points[n + 1, axis] / field.cell
+        if not is_free_line(field.occupied, pull, push):
             return points[: n + 1], CRASHED
-        if not is_free_line(field.closed, here / field.cell, points[n + 1] / field.cell):
+        if not is_free_line(field.closed, pull, push):
             return points[: n + 1], FORBIDDEN
     return points, GAVE_UP

@@ -171,7 +171,7 @@ def cheapest_subset(points, bounds, price, least_price, same, lookback):
     """
     best = np.full(len(points), np.inf)
     parent = np.zeros(len(points), np.int64)
-    in_the_way = [(-1, 0, 0, 0, 0.0) for _ in points]
+    in_the_way = np.full((len(points), 5), -1.0)
     best[0] = 0.0
     for j in range(1, len(points)):
         free, _ = keeps(bounds, points[j - 1], points[j], 0.0, 0.0)
@@ -185,7 +185,7 @@ def cheapest_subset(points, bounds, price, least_price, same, lookback):
                 continue
             free, box = keeps(bounds, points[i], points[j], 0.0, 0.0)
             if not free:
-                in_the_way[i] = box
+                in_the_way[i] = np.array(box)
                 continue
             cost = line_price(price, least_price, points[i], points[j], limit)
             if cost < limit:

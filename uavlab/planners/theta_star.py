@@ -181,12 +181,15 @@ def around_corners(points, step):
     count = 1
     for leg in range(len(points) - 1):
         length = distance(points[leg], points[leg + 1])
-        shares = np.zeros(2 * TAUT_POINTS + 1)
-        for n in range(TAUT_POINTS):
-            away = step * (n + 1) / length
-            shares[2 * n] = away * (leg > 0)
-            shares[2 * n + 1] = 1 - away * (leg < len(points) - 2)
-        shares.sort()
+        shares = np.empty(2 * TAUT_POINTS)
+        for n in range(len(shares)):  # from the one corner and from the other, in the order of the leg
+            away = step * (n // 2 + 1) / length
+            share = away * (leg > 0) if n % 2 == 0 else 1 - away * (leg < len(points) - 2)
+            place = n
+            while place > 0 and shares[place - 1] > share:
+                shares[place] = shares[place - 1]
+                place -= 1
+            shares[place] = share
         before = 0.0
         for share in shares:
             if before < share < 1:

@@ -13,7 +13,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.route import PROMISES, Route, check_promises, promises_of
 from uavlab.spline.basis import checked_count, checked_derivative, with_ends
-from uavlab.spline.sampling import AT_REST, points_at, sagittas, steps_on
+from uavlab.spline.sampling import AT_REST, curvature_vectors, points_at, sagittas, steps_on
 from uavlab.vehicle import GRAVITY
 
 CORNER = 1e-4
@@ -62,16 +62,9 @@ def curvature(velocity: npt.ArrayLike, acceleration: npt.ArrayLike) -> np.ndarra
     0.2
     """
     first, second = checks.vectors(velocity=velocity, acceleration=acceleration)
-    return np.linalg.norm(curvature_vector(first, second), axis=-1)
-
-
-def curvature_vector(velocity: np.ndarray, acceleration: np.ndarray) -> np.ndarray:
-    """What of r″ is across r′, over |r′|²: as long as κ, towards the inside of the turn; NaN where r′ stands still."""
-    speed = np.linalg.norm(velocity, axis=-1, keepdims=True)
-    moving = speed > AT_REST
-    tangent = velocity / np.where(moving, speed, 1.0)
-    across = acceleration - (acceleration * tangent).sum(axis=-1, keepdims=True) * tangent
-    return np.where(moving, across / np.where(moving, speed, 1.0) ** 2, np.nan)
+    shape = np.broadcast_shapes(first.shape, second.shape)
+    ways = (np.ascontiguousarray(np.broadcast_to(each, shape)).reshape(-1, shape[-1]) for each in (first, second))
+    return np.linalg.norm(curvature_vectors(*ways), axis=-1).reshape(shape[:-1])
 
 
 def allowed_speed(curvature: npt.ArrayLike, bank: float = BANK) -> np.ndarray:
@@ -308,7 +301,7 @@ class Curve:
         A corner is where the curve stands still and goes on in another direction, as at a point that stands three
         times. A turn that is too tight for `step` to resolve counts as even between the two points.
         """
-        bend = curvature_vector(self.velocity, self.acceleration)
+        bend = curvature_vectors(self.velocity, self.acceleration)
         at_rest = np.isnan(bend).any(axis=1)
         bend = np.where(at_rest[:, None], 0.0, bend)
         before = np.concatenate([self.tangent[:1], self.tangent[:-1]])

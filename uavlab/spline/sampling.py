@@ -56,8 +56,10 @@ def points_at(padded, parameter, derivative):
     for m in range(len(parameter)):
         segment = min(int(parameter[m]), len(padded) - 4)
         weights[:] = 0.0
-        for row in range(4):
-            power = FACTORS[derivative, row] * (parameter[m] - segment) ** POWERS[derivative, row]
+        t = parameter[m] - segment
+        powers = t * t * t, t * t, t, 1.0
+        for row in range(4 - derivative):
+            power = FACTORS[derivative, row] * powers[row + derivative]
             for n in range(4):
                 weights[n] += power * BASIS[row, n]
         falling = 0.0
@@ -85,6 +87,18 @@ def sagittas(points, velocity, acceleration, parameter):
         size = max(size, length(acceleration[n + 1] - (later if onward else 0.0) * along))
         most[n] = size * (parameter[n + 1] - parameter[n]) ** 2 / 8
     return most
+
+
+@compiled
+def curvature_vectors(velocity, acceleration):
+    """What of r″ is across r′, over |r′|², towards the inside of a turn (P, 3); NaN where r′ stands still."""
+    bends = np.full(velocity.shape, np.nan)
+    for n in range(len(bends)):
+        speed = length(velocity[n])
+        if speed > AT_REST:
+            tangent = velocity[n] / speed
+            bends[n] = (acceleration[n] - (acceleration[n] * tangent).sum() * tangent) / speed**2
+    return bends
 
 
 @compiled

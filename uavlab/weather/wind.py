@@ -17,6 +17,10 @@ GUSTS = ("none", "gaussian", "ou", "dryden")
 """In the order of the kinds in `uavlab.flight.motion`."""
 
 
+GUST_SHARES = np.array([1.0, 1.0, 0.5])
+"""Of σ of the gusts, along, across and vertical: up and down they are weaker."""
+
+
 @dataclass(frozen=True)
 class Wind:
     """Moving air and rain: a mean, and gusts around it.
@@ -203,7 +207,7 @@ def gust_spectrum(wind: Wind, omega: npt.ArrayLike, air_speed: float, altitude: 
         return np.zeros((*omega.shape, 3))
     turn = omega * wind.correlation
     shape = 2 / (1 + turn**2) if wind.gusts == "ou" else np.sinc(turn / (2 * np.pi)) ** 2
-    deviations = wind.deviation * np.array([1.0, 1.0, 0.5])
+    deviations = wind.deviation * GUST_SHARES
     return wind.correlation / np.pi * shape[..., None] * deviations**2
 
 
