@@ -30,7 +30,7 @@ from uavlab.planners.risk_question import STATES
 from uavlab.planners.risk_question import Query as RiskQuery
 from uavlab.planners.risk_search import rest_of_cost, search_states
 from uavlab.planners.risk_search import trace as trace_states
-from uavlab.planners.shortcut import straightened
+from uavlab.planners.shortcut import line_price, straightened
 from uavlab.planners.theta_star import WEIGHT as STRAIGHT_WEIGHT
 from uavlab.planners.theta_star import Query as StraightQuery
 from uavlab.planners.theta_star import Tree as StraightTree
@@ -290,6 +290,15 @@ def measure(
     way = points[:count]
     facts[NEAREST] = cell * least_clearance(runs, clearance, cell, (way - origin) / cell)
     return legs_of(way)[0][-1]
+
+
+@compiled
+def integral(points: Floats2, count: int, values: Floats3, origin: Floats1, cell: float) -> float:
+    """`Route.integral` of values that hold for whole voxels."""
+    cells, total = (points[:count] - origin) / cell, 0.0
+    for n in range(count - 1):
+        total += line_price(values, 0.0, cells[n], cells[n + 1], np.inf)
+    return cell * total
 
 
 @compiled

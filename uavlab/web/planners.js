@@ -2,28 +2,32 @@
 "use strict";
 
 async function loadPlanners(code, facts) {
-  const sizes = new Map(), free = new Map();  // of blocks of memory, by where they begin; and those to be had again, by size
-  let memory, top;
+  const HEAD = 64;  // of a block: its size at 0; and, for arrays, what numba knows of it at 64: users, and where its data are
+  const free = new Map();  // blocks to be had again, by size
+  let memory, top, words;
   function take(bytes) {
     const size = Number(bytes) + 63 & ~63, again = free.get(size);
     if (again?.length) return again.pop();
-    const at = top, missing = at + size - memory.buffer.byteLength;
-    if (missing > 0) memory.grow(Math.ceil(missing / 65536));
-    top += size;
-    sizes.set(at, size);
+    const at = top + HEAD, missing = at + size - memory.buffer.byteLength;
+    if (missing > 0) grow(missing);
+    top = at + size;
+    words[at - HEAD >> 2] = size;
     return at;
   }
   function give(at) {
-    const size = sizes.get(at);
-    if (!free.has(size)) free.set(size, []);
-    free.get(size).push(at);
+    const size = words[at - HEAD >> 2], same = free.get(size);
+    if (same) same.push(at); else free.set(size, [at]);
   }
-  const HEAD = 64;  // of a block that numba counts the users of: their number, and at 16 where its data are
+  function grow(bytes) {
+    memory.grow(Math.ceil(bytes / 65536));
+    words = new Uint32Array(memory.buffer);
+  }
   const given = {
     NRT_MemInfo_alloc_aligned(bytes) {
-      const at = take(Number(bytes) + HEAD), view = new DataView(memory.buffer, at, HEAD);
-      view.setBigUint64(0, 1n, true);
-      view.setUint32(16, at + HEAD, true);
+      const at = take(Number(bytes) + HEAD);
+      words[at >> 2] = 1;  // one user, in 64 bits
+      words[at + 4 >> 2] = 0;
+      words[at + 16 >> 2] = at + HEAD;
       return at;
     },
     NRT_MemInfo_call_dtor: give, NRT_Allocate: take, NRT_Free: give,
@@ -35,6 +39,7 @@ async function loadPlanners(code, facts) {
     env[name] = given[name] ?? (() => { throw new Error(`planners.wasm asked for ${name}, which the page hasn't`); });
   const {exports} = await WebAssembly.instantiate(module, {env});
   memory = exports.memory;
+  words = new Uint32Array(memory.buffer);
   top = exports.__heap_base.value + 63 & ~63;
 
   const KINDS = {boolean: Uint8Array, int32: Int32Array, int64: BigInt64Array, uint64: BigUint64Array, float64: Float64Array};
