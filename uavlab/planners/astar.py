@@ -166,12 +166,13 @@ def cheapest_route(
     return Route(city.center_of(city.index_of(nodes)), "A*", cost=cost * city.cell, info=info)
 
 
+NO_WAY = "no free way from {start} to {goal}: all {reach} voxels within reach were searched"
+
+
 def no_way(city: City, source: int, target: int, reach: int) -> Route:
     """A route that doesn't arrive, as all voxels within reach were searched."""
     start, goal = city.center_of(city.index_of([source, target]))
-    reason = (
-        f"no free way from {checks.show(start)} to {checks.show(goal)}: all {reach} voxels within reach were searched"
-    )
+    reason = NO_WAY.format(start=checks.show(start), goal=checks.show(goal), reach=reach)
     return Route.none("A*", reason, goal=goal)
 
 

@@ -34,6 +34,9 @@ MOST_LENGTHS = 10**4
 """Of a front: each takes a search."""
 
 
+NO_SAFE_WAY = "no route from {start} to {goal}"
+
+
 def least_risk(
     risk_map: RiskMap,
     start: npt.ArrayLike,
@@ -154,8 +157,8 @@ def least_risk(
         nodes, cost = routes[0] if routes else (np.empty(0, np.int64), np.inf)
     info = {"expanded": expanded, "elapsed": time.perf_counter() - began}
     if len(nodes) == 0:
-        asked = f"from {checks.show(start)} to {checks.show(goal)}"
-        reason = f"no route {asked}: {what_binds(risk_map, query, limits, max_length)}"
+        nowhere = NO_SAFE_WAY.format(start=checks.show(start), goal=checks.show(goal))
+        reason = f"{nowhere}: {what_binds(risk_map, query, limits, max_length)}"
         return Route.none(weights.name, reason, **info)
     city = risk_map.city
     route = Route(city.center_of(city.index_of(nodes)), weights.name, cost=cost, info=info)

@@ -297,7 +297,7 @@ def repulsion(distance: npt.ArrayLike, push: float, reach: float, *, safe_distan
 @compilable
 def push_at(distance, push, reach, end):
     """`repulsion` of arguments that are right, up to the distance `end`."""
-    return np.where(distance <= end, push * (1 / distance - 1 / reach) / distance**2, 0.0)
+    return (distance <= end) * (push * (1 / distance - 1 / reach) / distance**2) + 0.0  # beyond it 0, and not −0
 
 
 @compiled

@@ -6,9 +6,11 @@ import base64
 import gzip
 import html
 import json
+from collections.abc import Mapping
 from functools import lru_cache
 from importlib.resources import files
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import meshcat
 import meshcat.geometry as g
@@ -176,12 +178,29 @@ def motion_of(drawing: Drawing, camera: Camera, start_paused: bool, start_at: fl
     }  # fmt: skip
 
 
-def page_of(drawing: Drawing, motion: dict[str, Any], still: bytes, words: str) -> str:
+class Extra(NamedTuple):
+    """What a page has beyond a scene that plays."""
+
+    panel: str = ""
+    """HTML above the legend."""
+    style: str = ""
+    """CSS."""
+    scripts: Mapping[str, bytes] = MappingProxyType({})
+    """Run before anything else, by name."""
+    data: Mapping[str, bytes] = MappingProxyType({})
+    begin: str = ""
+    """A statement that is run when the scene is there."""
+
+
+PLAIN = Extra()
+
+
+def page_of(drawing: Drawing, motion: dict[str, Any], still: bytes, words: str, extra: Extra = PLAIN) -> str:
     """The whole page."""
     player, window = files("uavlab.scene").joinpath("player"), record(drawing)
     return player.joinpath("page.html").read_text("utf-8").format(
         title=html.escape(drawing.title[:1].upper() + drawing.title[1:]),
-        style=player.joinpath("page.css").read_text("utf-8"),
+        style=player.joinpath("page.css").read_text("utf-8") + extra.style,
         words=html.escape(words),
         still=base64.b64encode(still).decode(),
         legend=legend(drawing),
@@ -190,6 +209,10 @@ def page_of(drawing: Drawing, motion: dict[str, Any], still: bytes, words: str) 
         commands=compressed(compact(list(window.commands.values()))),
         arrays=compressed(bytes(window.arrays)),
         motion=compressed(compact(motion)),
+        panel=extra.panel,
+        scripts=", ".join(f'"{name}"' for name in extra.scripts),
+        more="".join(f', {name}: "{compressed(content)}"' for name, content in {**extra.scripts, **extra.data}.items()),
+        begin=extra.begin,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ WebAssembly doesn't have, such as exp. Needs `wasm-ld` (Debian's package lld); w
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -18,6 +19,8 @@ import tempfile
 from collections.abc import Container
 from pathlib import Path
 from typing import Any, get_type_hints
+
+from uavlab import __version__
 
 TARGET = "wasm32-unknown-unknown"
 WASM, FACTS = (Path(__file__).with_name(name) for name in ("planners.wasm", "planners.json"))
@@ -143,13 +146,20 @@ def build(wasm: Path = WASM, facts: Path = FACTS) -> None:
         exports = [f"--export={name}" for name in (*chosen, "__heap_base")]
         options = ["--no-entry", "--allow-undefined", "--gc-sections", "--strip-all", *exports]
         subprocess.run(["wasm-ld", *options, "-o", str(wasm), str(compiled)], check=True)
+    wasm.chmod(0o644)
     linker = subprocess.run(["wasm-ld", "--version"], capture_output=True, text=True, check=True).stdout
-    made_by = {"numba": numba.__version__, "llvmlite": llvmlite.__version__, "lld": re.findall(r"[\d.]+\d", linker)[0]}
+    made_by = {
+        "uavlab": __version__,
+        "numba": numba.__version__,
+        "llvmlite": llvmlite.__version__,
+        "lld": re.findall(r"[\d.]+\d", linker)[0],
+    }
     signatures = {}
     for name, function in chosen.items():
         takes = [[argument, *kind_of(hint)] for argument, hint in arguments_of(function).items()]
         signatures[name] = {"takes": takes, "gives": kind_of(result_of(function))[0]}
-    facts.write_text(json.dumps({"made_by": made_by, "functions": signatures}) + "\n")
+    digest = hashlib.sha256(wasm.read_bytes()).hexdigest()
+    facts.write_text(json.dumps({"made_by": made_by, "digest": digest, "functions": signatures}) + "\n")
 
 
 def functions() -> dict[str, Any]:

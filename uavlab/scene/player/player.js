@@ -174,7 +174,9 @@ function playScene(commands, arrays, scene) {
     element.style.display = seen ? "" : "none";
     if (seen) element.setAttribute("transform", `translate(${((point.x + 1) / 2 * pane.clientWidth).toFixed(1)} ${((1 - point.y) / 2 * pane.clientHeight).toFixed(1)})`);
   }
+  const after = [];  // what else is to be put in its place after each frame
   function update() {
+    for (const act of after) act();
     for (const sign of signs) put(sign.element, sign.place, sign.since <= now + 1e-9);
     for (const ring of rings) {
       const place = where(ring.mover, now)[0].toArray();
@@ -186,8 +188,8 @@ function playScene(commands, arrays, scene) {
     at("needle").setAttribute("transform", `scale(1 ${flat}) rotate(${azimuth / RADIANS})`);
     const ahead = [Math.sin(azimuth), -flat * Math.cos(azimuth)], stretch = 34 / Math.hypot(...ahead);
     ahead.forEach((part, i) => at("north").setAttribute("xy"[i], (stretch * part).toFixed(1)));
+    at("windmark").style.display = scene.wind ? "inline" : "none";
     if (scene.wind) {
-      at("windmark").style.display = "inline";
       const to = Math.atan2(scene.wind[0], scene.wind[1]);
       at("windmark").setAttribute("transform", `scale(1 ${flat}) rotate(${(azimuth + to) / RADIANS + 180}) scale(.8)`);
     }
@@ -265,4 +267,12 @@ function playScene(commands, arrays, scene) {
   at("still").remove();
   requestAnimationFrame(tick);
   body.dataset.ready = "yes";
+  function withoutRoutes() {  // for a page that draws its own
+    for (const sign of signs.splice(0)) sign.element.remove();
+    for (const name of scene.routes) {
+      node(name).visible = false;
+      for (const list of [scene.near, scene.far]) if (list.includes(name)) list.splice(list.indexOf(name), 1);
+    }
+  }
+  return {THREE, viewer, camera, controls, world, pane, overlay, drawn, put, scene, after, withoutRoutes};
 }

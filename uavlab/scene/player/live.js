@@ -1,0 +1,446 @@
+// A scene that answers: ends to drag, sliders, and the library's own planners and flights, from planners.wasm.
+"use strict";
+
+function playLive(stage, planners, live, buffer) {
+  const {THREE, viewer, camera, controls, world, pane, overlay, drawn, put} = stage;
+  const at = id => document.getElementById(id);
+  const [nx, ny, nz] = live.shape, count = nx * ny * nz, cell = live.cell;
+
+  // --- the city, in the planners' memory ---
+  const kept = name => live.arrays[name];
+  function bits(name) {  // packed as numpy.packbits does
+    const flags = new Uint8Array(count), begin = kept(name);
+    if (begin !== undefined) for (let n = 0; n < count; n++) flags[n] = buffer[begin + (n >> 3)] >> 7 - (n & 7) & 1;
+    return planners.numbers("boolean", flags, live.shape);
+  }
+  const floats = (name, length) => new Float64Array(buffer.slice(kept(name), kept(name) + 8 * length).buffer);
+  const origin = planners.numbers("float64", live.origin);
+  const occupied = bits("occupied"), closed = bits("closed"), clearance = planners.empty("float64", ...live.shape);
+  planners.clear(occupied, cell, clearance);
+  function runsOf(flags) {
+    const first = planners.empty("int64", nx * ny + 1), number = planners.count_runs(flags, first);
+    const runs = [first, planners.empty("int32", number), planners.empty("int32", number), planners.empty("boolean", number)];
+    planners.put_runs(flags, ...runs);
+    return runs;
+  }
+  const walls = runsOf(occupied), zones = runsOf(kept("zones") === undefined ? planners.numbers("boolean", new Uint8Array(count), live.shape) : bits("zones"));
+  const facts = planners.empty("float64", 8), points = planners.empty("float64", live.room, 3), price = planners.empty("float64", ...live.shape);
+  const nobody = planners.empty("int32", 0), order = live.expansions ? planners.empty("int32", count) : nobody;
+  const [COST, EXPANDED, REACHED, RECORDED, OUTCOME, STEPS, NEAREST] = [0, 1, 2, 3, 4, 5, 6];  // as functions.py has them
+  const risk = live.risk && {
+    rate: planners.numbers("float64", floats("rate", count), live.shape),
+    climb: planners.numbers("boolean", Uint8Array.from(live.risk.climb)),
+    turn: planners.numbers("boolean", Uint8Array.from(live.risk.turn.flat()), [live.risk.turn.length, 26]),
+    prices: Object.fromEntries(live.risk.prices.map(name => [name, planners.numbers("float64", floats(name, count), [1, count])])),
+  };
+  const shut = new Map();  // what is closed, by the clearance to keep
+  function blockedAt(least) {
+    if (!shut.has(least)) {
+      if (shut.size > 3) { const [oldest] = shut.keys(); shut.get(oldest).free(); shut.delete(oldest); }
+      const flags = planners.empty("boolean", ...live.shape);
+      planners.close(occupied, closed, clearance, least, cell, flags);
+      shut.set(least, flags);
+    }
+    return shut.get(least);
+  }
+
+  // --- state ---
+  const state = {ends: {start: live.start, goal: live.goal}, values: {}, shown: new Set(live.offers.filter(o => o.shown).map(o => o.name))};
+  for (const slider of live.sliders) state.values[slider.name] = slider.value;
+  const indexOf = place => place.map((x, a) => Math.min(Math.max(Math.floor((x - live.origin[a]) / cell), 0), live.shape[a] - 1));
+  const codeOf = ([i, j, k]) => (i * ny + j) * nz + k;
+  const centreOf = index => index.map((i, a) => live.origin[a] + cell * (i + 0.5));
+  const pointOf = code => centreOf([Math.floor(code / (ny * nz)), Math.floor(code / nz) % ny, code % nz]);
+  const shown = place => `(${place.map(x => String(Math.round(1000 * x) / 1000)).join(", ")})`;
+  const python = place => `(${place.map(x => Number.isInteger(x) ? `${x}.0` : String(x)).join(", ")})`;
+  const value = name => state.values[name];
+  const conditions = () => live.conditions[value("conditions")];
+
+  // --- what each planner does with the settings ---
+  const SOLVERS = {
+    astar: (offer, ends) => planners.astar(blockedAt(value("keep")), offer.heuristic, ...ends, origin, cell, points, order, facts),
+    zone(offer, ends) {
+      planners.price_zone(clearance, value("keep"), value("omega"), cell, price);
+      return planners.astar_priced(blockedAt(0), price, 1, ...ends, origin, cell, points, order, facts);
+    },
+    hazard(offer, ends) {
+      planners.price_hazard(clearance, value("sigma"), offer.radius, offer.price, price);
+      return straightened(planners.astar_priced(blockedAt(offer.radius), price, 1, ...ends, origin, cell, points, order, facts), offer.radius);
+    },
+    repare(offer, ends) {
+      const {distance, penalty, blown, loaded} = conditions();
+      planners.price_repare(clearance, distance, penalty, blown, loaded, cell, price);
+      return planners.astar_priced(blockedAt(offer.radius), price, 1, ...ends, origin, cell, points, order, facts);
+    },
+    theta: (offer, ends) => planners.thetastar(blockedAt(value("keep")), value("keep"), live.slack, ...ends, origin, cell, ...walls, ...zones, points, facts),
+    field(offer, ends, places) {
+      const [from, to] = places.map(place => planners.numbers("float64", place));
+      const found = planners.field(occupied, blockedAt(0), cell, origin, from, to, 0, offer.push, value("reach"), cell / 2, live.room - 1, points, facts);
+      from.free();
+      to.free();
+      return found;
+    },
+    risk: (offer, ends) => planners.least_risk(blockedAt(0), risk.prices[offer.price], risk.climb, risk.turn, ...ends, origin, cell, points, facts),
+  };
+  function straightened(found, least) {
+    if (found === 0) return 0;
+    const expanded = facts.values[EXPANDED];
+    const left = planners.straighten(points, found, price, least, live.slack, origin, cell, ...walls, ...zones, facts);
+    facts.values[EXPANDED] = expanded;
+    return left;
+  }
+  const keptBy = offer => ({astar: value("keep"), theta: value("keep"), hazard: offer.radius, repare: conditions()?.distance})[offer.kind] ?? 0;
+
+  function problemOf(end, least) {  // why nobody may be there, in words, and where one may
+    const place = state.ends[end], index = indexOf(place), code = codeOf(index), blocked = blockedAt(least);
+    if (!blocked.values[code]) return null;
+    const here = planners.numbers("float64", place), free = planners.nearest(blocked, here, origin, cell), near = clearance.values[code];
+    here.free();
+    const why = occupied.values[code] ? "lies in a building" : closed.values[code] ? "lies where the map is closed"
+      : `is ${near.toFixed(2)} m from the nearest obstacle, ${least} m are asked for`;
+    return {end, words: `${end} ${shown(place)} ${why}`, free: free < 0 ? null : pointOf(free)};
+  }
+
+  function solve(offer) {
+    const places = [state.ends.start, state.ends.goal], ends = places.map(place => codeOf(indexOf(place)));
+    const problem = problemOf("start", keptBy(offer)) ?? problemOf("goal", keptBy(offer));
+    if (problem) return {offer, reason: problem.words, problem};
+    if (ends[0] === ends[1]) return {offer, reason: "start and goal lie in the same voxel"};
+    const began = performance.now(), found = SOLVERS[offer.kind](offer, ends, places), took = performance.now() - began;
+    if (found > live.room) return {offer, reason: `the route has ${found} points, the page has room for ${live.room}`};
+    const [cost, expanded, reached, recorded, outcome] = facts.values;
+    const answer = {offer, took, expanded, cost: cost, way: points.values.slice(0, 3 * found), points: found};
+    if (found === 0) return {...answer, reason: said(live.words[offer.kind === "risk" ? "no_risk" : "no_way"], {start: shown(places[0]), goal: shown(places[1]), reach: offer.kind === "theta" ? expanded : reached})};
+    answer.length = planners.measure(points, found, clearance, ...walls, origin, cell, facts);
+    answer.clearance = facts.values[NEAREST];
+    if (risk) answer.risk = planners.integral(points, found, risk.rate, origin, cell);
+    if (recorded && order !== nobody) answer.order = order.values.slice(0, recorded);
+    if (offer.kind === "field" && outcome !== 0) {
+      const last = [...answer.way.slice(-3)], left = Math.hypot(...last.map((x, a) => x - places[1][a]));
+      answer.reason = said(live.words.field[outcome], {place: shown(last), left: left.toFixed(1), steps: live.room - 1});
+    }
+    return answer;
+  }
+  const said = (template, words) => template.replace(/\{(\w+)(:[^}]*)?\}/g, (_, name) => words[name]);
+
+  // --- drawing ---
+  const near = place => place.map((x, a) => x - live.center[a]);
+  const local = place => new THREE.Vector3(...near(place));  // in the viewer's scene, which itself is turned
+  const objects = {routes: new THREE.Group(), flights: new THREE.Group(), expanded: new THREE.Group()};
+  for (const group of Object.values(objects)) viewer.scene.add(group);
+  function emptied(group) {
+    for (const child of [...group.children]) { group.remove(child); child.geometry.dispose(); child.material.dispose(); }
+    return group;
+  }
+  function cornersOf(way) {  // without the points in the middle of straight parts
+    const places = [];
+    for (let n = 0; n < way.length; n += 3) places.push([way[n], way[n + 1], way[n + 2]]);
+    const along = (a, b) => { const d = b.map((x, i) => x - a[i]), size = Math.hypot(...d); return d.map(x => x / size); };
+    return places.filter((place, n) => {
+      if (n === 0 || n === places.length - 1) return true;
+      const before = along(places[n - 1], place), after = along(place, places[n + 1]);
+      return before.some((x, i) => Math.abs(x - after[i]) > 1e-9);
+    });
+  }
+  function dashed(places, dashes, unit) {  // pieces of a polyline, drawn and left out in turn
+    if (!dashes.length) return places.slice(1).map((place, n) => [places[n], place]);
+    const pieces = [];
+    let number = 0, left = dashes[0] * unit;
+    for (let n = 1; n < places.length; n++) {
+      let from = places[n - 1];
+      const to = places[n];
+      for (;;) {
+        const size = Math.hypot(...to.map((x, a) => x - from[a])), step = Math.min(left, size);
+        const there = size > 0 ? from.map((x, a) => x + step / size * (to[a] - x)) : to;
+        if (number % 2 === 0) pieces.push([from, there]);
+        left -= step;
+        from = there;
+        if (left > 1e-9) break;
+        number = (number + 1) % dashes.length;
+        left = dashes[number] * unit;
+      }
+    }
+    return pieces;
+  }
+  function tube(pieces, radius, color) {
+    const sides = 6, corners = [];
+    for (const [from, to] of pieces) {
+      const a = local(from), b = local(to), along = b.clone().sub(a).normalize();
+      const aside = new THREE.Vector3(...(Math.abs(along.z) < 0.9 ? [0, 0, 1] : [1, 0, 0])).cross(along).normalize(), up = along.clone().cross(aside);
+      const ring = [...Array(sides + 1).keys()].map(n => aside.clone().multiplyScalar(radius * Math.cos(2 * Math.PI * n / sides)).addScaledVector(up, radius * Math.sin(2 * Math.PI * n / sides)));
+      a.addScaledVector(along, -0.4 * radius);
+      b.addScaledVector(along, 0.4 * radius);
+      for (let n = 0; n < sides; n++)
+        for (const [end, m] of [[a, n], [b, n], [b, n + 1], [a, n], [b, n + 1], [a, n + 1]]) corners.push(...end.clone().add(ring[m]).toArray());
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(corners, 3));
+    geometry.computeVertexNormals();
+    return new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({color, side: THREE.DoubleSide}));
+  }
+  function dots(places, color, size, opacity) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(places, 3));
+    return new THREE.Points(geometry, new THREE.PointsMaterial({color, size, transparent: true, opacity, depthWrite: false}));
+  }
+  function lines(ends, color, opacity) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(ends, 3));
+    return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color, transparent: true, opacity}));
+  }
+  const crosses = [];  // where flights crashed
+  function drawRoutes(answers) {
+    emptied(objects.routes);
+    emptied(objects.expanded);
+    for (const {offer, way, order} of answers) {
+      if (way?.length > 3) objects.routes.add(tube(dashed(cornersOf(way), offer.dashes, live.width), live.width / 2, offer.color));
+      if (order && at("expanded").checked) {
+        const step = Math.ceil(order.length / 40000), places = [];
+        for (let n = 0; n < order.length; n += step) places.push(...near(pointOf(order[n])));
+        objects.expanded.add(dots(places, offer.color, 0.45 * cell, 0.35));
+      }
+    }
+    viewer.set_dirty();
+  }
+  function forgetFlights() {
+    emptied(objects.flights);
+    for (const cross of crosses.splice(0)) cross.element.remove();
+    for (const row of document.querySelectorAll("#offers .flown")) row.textContent = "";
+    flying = null;
+  }
+
+  // --- answers ---
+  let answers = [];
+  function plan() {
+    forgetFlights();
+    answers = live.offers.filter(offer => state.shown.has(offer.name)).map(offer => {
+      try { return solve(offer); } catch (error) { return {offer, reason: error instanceof RangeError ? "the page has no more memory for this" : error.message}; }
+    });
+    drawRoutes(answers);
+    for (const offer of live.offers) tell(offer, answers.find(answer => answer.offer === offer));
+    const problem = answers.find(answer => answer.problem)?.problem;
+    at("wrong").hidden = !problem;
+    if (problem) {
+      at("wrong").firstElementChild.textContent = `${problem.words[0].toUpperCase()}${problem.words.slice(1)}.`;
+      const button = at("instead");
+      button.hidden = problem.free === null;
+      button.textContent = problem.free ? `Move it to the nearest free point ${shown(problem.free)}` : "";
+      button.onclick = () => move(problem.end, problem.free);
+    }
+    for (const handle of handles) handle.element.classList.toggle("wrong", answers.some(answer => answer.problem?.end === handle.end));
+    at("python").textContent = asPython();
+    remember();
+    document.body.dataset.planned = String(Number(document.body.dataset.planned ?? 0) + 1);
+  }
+  const per = (x, digits) => x.toLocaleString("en", {minimumFractionDigits: digits, maximumFractionDigits: digits});
+  function tell(offer, answer) {
+    const row = at(`offer-${live.offers.indexOf(offer)}`), words = row.querySelector(".found");
+    words.textContent = !answer ? "" : answer.reason && !answer.length ? `${answer.reason[0].toUpperCase()}${answer.reason.slice(1)}` : [
+      answer.reason ? `doesn’t arrive: ${answer.reason}` : `${per(answer.length, 1)} m`,
+      answer.clearance === Infinity ? "" : `clearance ${per(answer.clearance, 2)} m`,
+      answer.risk === undefined ? "" : `risk ${answer.risk.toExponential(2)} ${live.risk.unit}`,
+      `${per(answer.expanded, 0)} ${offer.kind === "field" ? "steps" : "expanded"}`, `${per(answer.took, answer.took < 10 ? 1 : 0)} ms`,
+    ].filter(Boolean).join(" · ");
+    words.dataset.length = answer?.reason ? "" : String(answer?.length ?? "");
+  }
+  function asPython() {
+    const numbersOf = {start: python(state.ends.start), goal: python(state.ends.goal), ...state.values, conditions: conditions()?.python, wind: windWords()};
+    const chosen = live.offers.filter(offer => state.shown.has(offer.name));
+    const calls = chosen.map(offer => said(offer.python[value("keep") === 0 && offer.python.length > 1 ? 1 : 0], numbersOf));
+    return [...new Set(chosen.flatMap(offer => offer.imports)), ...(live.flights ? live.flights.imports : []), "", ...calls,
+            ...(live.flights ? [said(live.flights.python, numbersOf)] : [])].join("\n");
+  }
+
+  // --- flights ---
+  let flying = null;
+  const windOf = () => {
+    const turn = value("towards") * Math.PI / 180, speed = value("wind");
+    return [speed * Math.sin(turn), speed * Math.cos(turn), 0].map(x => Math.round(1e6 * x) / 1e6 + 0);
+  };
+  const windWords = () => live.flights ? `(${windOf().slice(0, 2).join(", ")})` : "";
+  async function fly() {
+    forgetFlights();
+    const mine = flying = {}, {total, craft, speed, touching, near: nearGoal, step, every, gust, head} = live.flights;
+    const wind = planners.numbers("float64", windOf()), numbersOf = planners.numbers("float64", craft);
+    const mean = Math.hypot(...windOf()), strongest = mean + 3 * value("gusts");
+    const log = planners.empty("float64", 4000, 12), words = new BigUint64Array(buffer.slice(kept("states"), kept("states") + 32 * total).buffer);
+    const flightState = planners.empty("uint64", 4), intervals = floats("intervals", 2 * (total + 1));
+    for (const answer of answers.filter(a => a.length && !a.reason)) {
+      const row = at(`offer-${live.offers.indexOf(answer.offer)}`).querySelector(".flown");
+      if (strongest > gust || mean > head) {
+        row.textContent = strongest > gust ? `stays on the ground: gusts of ${per(strongest, 1)} m/s, and the thrust holds ${per(gust, 1)} m/s` : `stays on the ground: the mean wind of ${per(mean, 1)} m/s leaves no way against it`;
+        continue;
+      }
+      const way = planners.numbers("float64", answer.way, [answer.points, 3]), tracks = [];
+      let crashed = 0, gaveUp = 0;
+      for (let number = 0; number < total; number++) {
+        if (number % 10 === 0) {
+          row.textContent = `flight ${number} of ${total} …`;
+          await new Promise(requestAnimationFrame);
+          if (flying !== mine) break;
+        }
+        flightState.set(words.subarray(4 * number, 4 * number + 4));
+        const rows = Math.min(planners.fly(way, answer.points, speed, wind, value("gusts"), live.flights.memory, numbersOf, step, every, touching, nearGoal,
+          occupied, clearance, ...walls, origin, cell, flightState, log, facts), 4000), outcome = facts.values[OUTCOME], seen = log.values;
+        crashed += outcome === 2;
+        gaveUp += outcome === 3 || outcome === 4 || outcome === 0;
+        if (outcome === 2) crosses.push({place: near([1, 2, 3].map(a => seen[12 * (rows - 1) + a])), element: drawn("crash", live.crash)});
+        if (number < 60)
+          for (let n = 1; n < rows; n++) tracks.push(...[n - 1, n].flatMap(m => near([1, 2, 3].map(a => seen[12 * m + a]))));
+      }
+      way.free();
+      if (flying !== mine) break;
+      objects.flights.add(lines(tracks, answer.offer.color, 0.45));
+      const [low, high] = intervals.slice(2 * crashed, 2 * crashed + 2);
+      row.textContent = `${crashed} of ${total} crash: ${per(1000 * crashed / total, 0)} per 1 000 [${per(1000 * low, 0)}, ${per(1000 * high, 0)}]` + (gaveUp ? `; ${gaveUp} give up` : "");
+      row.dataset.crashed = crashed;
+      viewer.set_dirty();
+    }
+    for (const numbers of [wind, numbersOf, log, flightState]) numbers.free();
+    if (flying === mine) document.body.dataset.flown = String(Number(document.body.dataset.flown ?? 0) + 1);
+  }
+
+  // --- ends to drag ---
+  const rays = new THREE.Raycaster();
+  function rayAt(event) {
+    const box = pane.getBoundingClientRect();
+    rays.setFromCamera({x: 2 * (event.clientX - box.left) / box.width - 1, y: 1 - 2 * (event.clientY - box.top) / box.height}, camera);
+    return rays.ray;
+  }
+  const placeOf = vector => [vector.x, -vector.z, vector.y].map((x, a) => x + live.center[a]);
+  function move(end, place) {
+    const to = centreOf(indexOf(place));
+    if (to.every((x, a) => x === state.ends[end][a])) return;
+    state.ends[end] = to;
+    later();
+  }
+  let waiting = false;
+  function later() {
+    viewer.set_dirty();
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => { waiting = false; plan(); });
+  }
+  const handles = Object.keys(state.ends).map(end => {
+    const element = drawn(end, "#222");
+    element.classList.add("handle");
+    element.setAttribute("tabindex", "0");
+    element.setAttribute("role", "button");
+    const SVG = element.namespaceURI, name = end === "start" ? "Start" : "Goal";
+    for (const [kind, path, title] of [["level", "M-14 0a14 14 0 1 0 28 0a14 14 0 1 0-28 0", `${name}: drag it over the map`], ["height", "M0-44l6 8h-4v10h4l-6 8-6-8h4v-10h-4z", `${name}: drag its height`]]) {
+      const grip = element.appendChild(document.createElementNS(SVG, "path"));
+      grip.setAttribute("d", path);
+      grip.setAttribute("class", kind);
+      grip.appendChild(document.createElementNS(SVG, "title")).textContent = title;
+      grip.addEventListener("pointerdown", event => {
+        event.preventDefault();
+        event.stopPropagation();
+        element.focus();
+        grip.setPointerCapture(event.pointerId);
+        controls.enabled = false;
+        const from = world(near(state.ends[end])), back = camera.position.clone().sub(from).setY(0).normalize();
+        const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(kind === "height" || event.shiftKey ? back : new THREE.Vector3(0, 1, 0), from);
+        const offset = rayAt(event).intersectPlane(plane, new THREE.Vector3())?.sub(from) ?? new THREE.Vector3();
+        const drag = event => {
+          const hit = rayAt(event).intersectPlane(plane, new THREE.Vector3());
+          if (!hit) return;
+          const place = placeOf(hit.sub(offset)), [x, y, z] = state.ends[end];
+          move(end, kind === "height" || event.shiftKey ? [x, y, place[2]] : [place[0], place[1], z]);
+        };
+        const done = () => { grip.removeEventListener("pointermove", drag); controls.enabled = true; };
+        grip.addEventListener("pointermove", drag);
+        grip.addEventListener("pointerup", done, {once: true});
+        grip.addEventListener("pointercancel", done, {once: true});
+      });
+    }
+    element.addEventListener("keydown", event => {
+      const step = {ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0], PageUp: [0, 0, 1], PageDown: [0, 0, -1]}[event.key];
+      if (!step) return;
+      event.preventDefault();
+      event.stopPropagation();
+      move(end, state.ends[end].map((x, a) => x + cell * step[a]));
+    });
+    return {end, element};
+  });
+  stage.after.push(() => {
+    for (const {end, element} of handles) {
+      put(element, near(state.ends[end]), true);
+      element.setAttribute("aria-label", `${end === "start" ? "Start" : "Goal"} at ${shown(state.ends[end])} m; arrow keys move it, Page Up and Page Down change its height`);
+    }
+    for (const cross of crosses) put(cross.element, cross.place, true);
+  });
+
+  // --- the panel ---
+  live.offers.forEach((offer, number) => {
+    const box = at(`offer-${number}`).querySelector("input");
+    box.onchange = () => { if (box.checked) state.shown.add(offer.name); else state.shown.delete(offer.name); later(); };
+  });
+  function showValues() {
+    live.offers.forEach((offer, number) => { at(`offer-${number}`).querySelector("input").checked = state.shown.has(offer.name); });
+    for (const {name, unit} of live.sliders) {
+      at(`set-${name}`).value = String(value(name));
+      const output = at(`is-${name}`);
+      if (output) output.textContent = `${value(name)}${unit}`;
+    }
+    if (live.flights) stage.scene.wind = value("wind") > 0 ? windOf().slice(0, 2) : null;
+  }
+  for (const {name, plans} of live.sliders)
+    at(`set-${name}`).oninput = event => {
+      state.values[name] = Number(event.target.value);
+      showValues();
+      if (plans) later(); else { forgetFlights(); at("python").textContent = asPython(); remember(); viewer.set_dirty(); }
+    };
+  if (live.flights) at("fly").onclick = fly;
+  if (live.expansions) at("expanded").onchange = () => drawRoutes(answers);
+  at("link").onclick = async () => {
+    const page = alone ? location : outside();
+    const text = `${page ? page.href.split("#")[0] : ""}#${fragment()}`;
+    try { await navigator.clipboard.writeText(text); at("link").textContent = "Link copied"; }
+    catch { at("linked").value = text; at("linked").hidden = false; at("linked").select(); }
+    setTimeout(() => { at("link").textContent = "Copy link"; }, 2000);
+  };
+
+  // --- the address ---
+  const alone = window.parent === window;
+  function outside() { try { return window.parent.location; } catch { return null; } }  // a notebook's frame may not be asked
+  function fragment() {
+    const fields = {scene: live.id, start: state.ends.start, goal: state.ends.goal, show: live.offers.map((offer, n) => state.shown.has(offer.name) ? n : null).filter(n => n !== null), ...state.values};
+    return Object.entries(fields).map(([name, field]) => `${name}=${[field].flat().join(",")}`).join("&");
+  }
+  function remember() { if (alone) history.replaceState(null, "", `#${fragment()}`); }
+  function recall() {
+    const fields = new URLSearchParams((alone ? location : outside())?.hash.slice(1) ?? "");
+    if (fields.get("scene") !== live.id) return;
+    for (const end of ["start", "goal"]) {
+      const place = fields.get(end)?.split(",").map(Number);
+      if (place?.length === 3 && place.every(Number.isFinite)) state.ends[end] = centreOf(indexOf(place));
+    }
+    for (const {name, least, most} of live.sliders) {
+      const number = Number(fields.get(name) ?? NaN);
+      if (number >= least && number <= most) state.values[name] = number;
+    }
+    if (fields.has("show")) state.shown = new Set(fields.get("show").split(",").map(n => live.offers[n]?.name).filter(Boolean));
+  }
+
+  stage.withoutRoutes();
+  at("live").classList.add("ready");
+  at("legend").open = true;
+  at("legend").querySelector("summary").textContent = "Planners";
+  recall();
+  showValues();
+  plan();
+  document.body.dataset.live = "yes";
+}
+
+async function beginLive(stage, unpack, read, packed) {
+  try {
+    if (typeof WebAssembly !== "object") throw new Error("there is no WebAssembly");
+    const planners = await loadPlanners(new Uint8Array(await unpack(packed.wasm)), await read("facts"));
+    playLive(stage, planners, await read("told"), new Uint8Array(await unpack(packed.kept)));
+  } catch (error) {
+    const words = document.getElementById("lifeless");
+    words.textContent = `The planners can't run in this browser: the scene shows the routes as they were planned at first. (${error.message})`;
+    words.hidden = false;
+    document.body.dataset.live = "no";
+  }
+}
