@@ -39,7 +39,8 @@ class Path(NamedTuple):
 def constant_speed(route: Route, speed: float) -> Path:
     """The same speed all the way."""
     points = without_standing(route)
-    return Path(points, *legs_of(points), np.full(len(points), speed), np.full(len(points) - 1, speed), BRAKING)
+    distance, direction = legs_of(points)
+    return Path(points, distance, direction, np.full(len(points), speed), np.full(len(points) - 1, speed), BRAKING)
 
 
 def planned_speed(route: Route, uav: UAV, wind: Wind, speed: float | np.ndarray) -> Path:

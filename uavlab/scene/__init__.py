@@ -10,8 +10,8 @@ from uavlab.requirements import require
 
 require("meshcat", "scene")  # said here, in words, before the modules that import it
 
-from uavlab.scene.live import live, live_page  # noqa: E402
+from uavlab.scene.live import live, live_curve  # noqa: E402
 from uavlab.scene.pages import Scene, page, show  # noqa: E402
 from uavlab.scene.stills import still  # noqa: E402
 
-__all__ = ["Scene", "live", "live_page", "page", "show", "still"]
+__all__ = ["Scene", "live", "live_curve", "page", "show", "still"]

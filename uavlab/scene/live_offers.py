@@ -93,9 +93,9 @@ def in_zone(city: City, start: np.ndarray, goal: np.ndarray, now: Settings) -> R
     return astar(city, start, goal, price=price)
 
 
-def by_risk(**weights: float) -> Callable[..., Route]:
+def by_risk(risk_weight: float = 1.0, length_weight: float = 0.0) -> Callable[..., Route]:
     def plan(risk: RiskMap, start: np.ndarray, goal: np.ndarray, now: Settings) -> Route:
-        return least_risk(risk, start, goal, **weights)
+        return least_risk(risk, start, goal, risk_weight=risk_weight, length_weight=length_weight)
 
     return plan
 

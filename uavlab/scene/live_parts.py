@@ -92,6 +92,6 @@ def flights_told(count: int, uav: UAV, uav_name: str, kept: Bytes) -> dict[str, 
         "head": steady_air_speed(uav, rain, calm.air_density) - CREEP,
         "imports": ["from uavlab.flight import crash_rate, monte_carlo", "from uavlab.weather import Wind"],
         "python": f"wind = Wind({{wind}}, deviation={{gusts}})\n"
-        f"rates = {{name: crash_rate(monte_carlo(route, city, {uav_name}, wind, rng=0, flights={count}))\n"
-        "         for name, route in routes.items()}",
+        "for name, route in routes.items():\n"
+        f"    print(name, crash_rate(monte_carlo(route, city, {uav_name}, wind, rng=0, flights={count})))",
     }  # fmt: skip

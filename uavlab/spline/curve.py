@@ -13,8 +13,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.route import PROMISES, Route, check_promises, promises_of
 from uavlab.spline.basis import checked_count, checked_derivative, with_ends
-from uavlab.spline.sampling import AT_REST, curvature_vectors, points_at, sagittas, steps_on
-from uavlab.vehicle import GRAVITY
+from uavlab.spline.sampling import AT_REST, curvature_vectors, points_at, sagittas, speed_in_turn, steps_on
 
 CORNER = 1e-4
 """Where it stands still and its direction changes by more than this [rad], it has a corner; less is rounding."""
@@ -104,7 +103,7 @@ def allowed_speed(curvature: npt.ArrayLike, bank: float = BANK) -> np.ndarray:
     checks.refuse(values, values >= 0, "curvature must be at least 0")
     bank = checked_bank(bank)
     with np.errstate(divide="ignore"):
-        return np.sqrt(GRAVITY * np.tan(bank) / values)
+        return speed_in_turn(values, bank)
 
 
 def checked_bank(bank: float) -> float:

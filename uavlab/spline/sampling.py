@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from uavlab.compiled import compilable, compiled
+from uavlab.vehicle import GRAVITY
 
 BASIS = np.array([[-1.0, 3.0, -3.0, 1.0], [3.0, -6.0, 3.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [1.0, 4.0, 1.0, 0.0]]) / 6.0
 """From the powers of t (rows: t³, t², t, 1) to the weights of four control points (columns)."""
@@ -17,6 +18,12 @@ FACTORS = np.array([[1, 1, 1, 1], [3, 2, 1, 0], [6, 2, 0, 0]])
 
 AT_REST = 1e-9
 """A curve that runs fewer metres than this per segment stands still."""
+
+
+@compilable
+def speed_in_turn(curvature, bank):
+    """`allowed_speed` of arguments that are right."""
+    return np.sqrt(GRAVITY * np.tan(bank) / curvature)
 
 
 @compilable

@@ -35,7 +35,7 @@ from uavlab.planners.theta_star import WEIGHT as STRAIGHT_WEIGHT
 from uavlab.planners.theta_star import Query as StraightQuery
 from uavlab.planners.theta_star import Tree as StraightTree
 from uavlab.planners.theta_star import pulled_taut, straight_nodes
-from uavlab.spline.sampling import curvature_vectors, mirrored, points_at, sagittas, steps_on
+from uavlab.spline.sampling import curvature_vectors, mirrored, points_at, sagittas, speed_in_turn, steps_on
 from uavlab.weather.wind import GUST_SHARES
 from uavlab.web.generator import Stream
 
@@ -49,9 +49,10 @@ Ints1 = Annotated[np.ndarray, "int32", 1]
 Longs1 = Annotated[np.ndarray, "int64", 1]
 Words1 = Annotated[np.ndarray, "uint64", 1]
 
-COST, EXPANDED, REACHED, RECORDED, OUTCOME, STEPS, NEAREST, ENERGY = range(8)
+COST, EXPANDED, REACHED, RECORDED, OUTCOME, STEPS, NEAREST, ENERGY, BEND, FASTEST = range(10)
 """Where answers stand in `facts`: a route's cost, expanded nodes, voxels within reach where there is no way, nodes that
-are recorded, how a walk or a flight ended, its logged steps, least distance to obstacles [m], energy used [J]."""
+are recorded, how a walk or a flight ended, its logged steps, least distance to obstacles [m], energy used [J], and
+of a curve the greatest curvature on the plan [1/m] and the speed [m/s] at which a bank angle holds it."""
 
 CRAFT = (
     "mass", "thrust", "drag", "tan_tilt", "rain", "disc", "profile", "efficiency", "charge", "omega", "pace",
@@ -303,7 +304,7 @@ def integral(points: Floats2, count: int, values: Floats3, origin: Floats1, cell
 
 @compiled
 def curve(
-    control: Floats2, count: int, step: float, clearance: Floats3,
+    control: Floats2, count: int, step: float, bank: float, clearance: Floats3,
     first: Longs1, low: Ints1, high: Ints1, inner: Flags1, origin: Floats1, cell: float,
     points: Floats2, bend: Floats1, facts: Floats1,
 ) -> int:  # fmt: skip
@@ -328,7 +329,8 @@ def curve(
     least = np.inf
     for n in range(len(off)):
         least = min(least, max(cell * apart[n] - off[n], 0.0))
-    facts[NEAREST], facts[COST] = least, legs_of(way)[0][-1]
+    facts[NEAREST], facts[COST], facts[BEND] = least, legs_of(way)[0][-1], bend[: len(way)].max()
+    facts[FASTEST] = speed_in_turn(facts[BEND], bank)
     return len(way)
 
 

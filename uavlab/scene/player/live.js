@@ -24,9 +24,9 @@ function playLive(stage, planners, live, buffer) {
     return runs;
   }
   const walls = runsOf(occupied), zones = runsOf(kept("zones") === undefined ? planners.numbers("boolean", new Uint8Array(count), live.shape) : bits("zones"));
-  const facts = planners.empty("float64", 8), points = planners.empty("float64", live.room, 3), price = planners.empty("float64", ...live.shape);
+  const facts = planners.empty("float64", 10), points = planners.empty("float64", live.room, 3), price = planners.empty("float64", ...live.shape);
   const nobody = planners.empty("int32", 0), order = live.expansions ? planners.empty("int32", count) : nobody;
-  const [COST, EXPANDED, REACHED, RECORDED, OUTCOME, STEPS, NEAREST] = [0, 1, 2, 3, 4, 5, 6];  // as functions.py has them
+  const [COST, EXPANDED, REACHED, RECORDED, OUTCOME, NEAREST, BEND, FASTEST] = [0, 1, 2, 3, 4, 6, 8, 9];  // as functions.py has them
   const risk = live.risk && {
     rate: planners.numbers("float64", floats("rate", count), live.shape),
     climb: planners.numbers("boolean", Uint8Array.from(live.risk.climb)),
@@ -45,9 +45,10 @@ function playLive(stage, planners, live, buffer) {
   }
 
   // --- state ---
-  const state = {ends: {start: live.start, goal: live.goal}, values: {}, shown: new Set(live.offers.filter(o => o.shown).map(o => o.name))};
+  const state = {ends: Object.fromEntries(live.ends), values: {}, shown: new Set(live.offers.filter(o => o.shown).map(o => o.name))};
   for (const slider of live.sliders) state.values[slider.name] = slider.value;
   const indexOf = place => place.map((x, a) => Math.min(Math.max(Math.floor((x - live.origin[a]) / cell), 0), live.shape[a] - 1));
+  const snapped = place => live.curve ? place.map((x, a) => Math.round(10 * Math.min(Math.max(x, live.origin[a]), live.origin[a] + cell * live.shape[a])) / 10) : centreOf(indexOf(place));
   const codeOf = ([i, j, k]) => (i * ny + j) * nz + k;
   const centreOf = index => index.map((i, a) => live.origin[a] + cell * (i + 0.5));
   const pointOf = code => centreOf([Math.floor(code / (ny * nz)), Math.floor(code / nz) % ny, code % nz]);
@@ -212,6 +213,7 @@ function playLive(stage, planners, live, buffer) {
   // --- answers ---
   let answers = [];
   function plan() {
+    if (live.curve) { bend(); return; }
     forgetFlights();
     answers = live.offers.filter(offer => state.shown.has(offer.name)).map(offer => {
       try { return solve(offer); } catch (error) { return {offer, reason: error instanceof RangeError ? "the page has no more memory for this" : error.message}; }
@@ -227,9 +229,28 @@ function playLive(stage, planners, live, buffer) {
       button.textContent = problem.free ? `Move it to the nearest free point ${shown(problem.free)}` : "";
       button.onclick = () => move(problem.end, problem.free);
     }
+    if (risk) at("below").textContent = live.ends.map(([end]) => `r at the ${end}: ${power(risk.rate.values[codeOf(indexOf(state.ends[end]))])} deaths an hour`).join(" · ");
     for (const handle of handles) handle.element.classList.toggle("wrong", answers.some(answer => answer.problem?.end === handle.end));
     at("python").textContent = asPython();
     remember();
+    document.body.dataset.planned = String(Number(document.body.dataset.planned ?? 0) + 1);
+  }
+  const bends = live.curve && planners.empty("float64", live.room), control = live.curve && planners.empty("float64", live.ends.length, 3);
+  function bend() {  // a curve in place of routes
+    const places = Object.values(state.ends);
+    control.set(places.flat());
+    const began = performance.now(), found = planners.curve(control, places.length, live.curve.step, live.curve.bank, clearance, ...walls, origin, cell, points, bends, facts);
+    const took = performance.now() - began, [row] = live.offers, fact = facts.values;
+    emptied(objects.routes);
+    if (found <= live.room) objects.routes.add(tube(dashed(cornersOf(points.values.slice(0, 3 * found)), row.dashes, live.width), live.width / 2, row.color));
+    objects.routes.add(lines(places.slice(1).flatMap((place, n) => [...near(places[n]), ...near(place)]), "#222", 0.6));
+    const words = at("offer-0").querySelector(".found");
+    words.textContent = found > live.room ? "the curve is too long for the page" : [`${per(fact[COST], 1)} m`, fact[NEAREST] > 0 ? `clearance ${per(fact[NEAREST], 2)} m` : "it touches a building",
+      fact[BEND] > 1e-9 ? `tightest bend ${per(1 / fact[BEND], 1)} m of radius: ${per(fact[FASTEST], 1)} m/s at a bank of ${live.curve.degrees}°` : "straight", `${per(took, 1)} ms`].join(" · ");
+    words.dataset.length = String(fact[COST]);
+    at("python").textContent = `from uavlab.spline import Curve\n\ncurve = Curve([\n${places.map(place => `    ${python(place)},`).join("\n")}\n])\nprint(curve.length, curve.clearance(city), curve.level_curvature.max())`;
+    remember();
+    viewer.set_dirty();
     document.body.dataset.planned = String(Number(document.body.dataset.planned ?? 0) + 1);
   }
   const per = (x, digits) => x.toLocaleString("en", {minimumFractionDigits: digits, maximumFractionDigits: digits});
@@ -238,16 +259,21 @@ function playLive(stage, planners, live, buffer) {
     words.textContent = !answer ? "" : answer.reason && !answer.length ? `${answer.reason[0].toUpperCase()}${answer.reason.slice(1)}` : [
       answer.reason ? `doesn’t arrive: ${answer.reason}` : `${per(answer.length, 1)} m`,
       answer.clearance === Infinity ? "" : `clearance ${per(answer.clearance, 2)} m`,
-      answer.risk === undefined ? "" : `risk ${answer.risk.toExponential(2)} ${live.risk.unit}`,
+      answer.risk === undefined ? "" : `${power(answer.risk * live.risk.scale)} deaths a flight`,
       `${per(answer.expanded, 0)} ${offer.kind === "field" ? "steps" : "expanded"}`, `${per(answer.took, answer.took < 10 ? 1 : 0)} ms`,
     ].filter(Boolean).join(" · ");
     words.dataset.length = answer?.reason ? "" : String(answer?.length ?? "");
+  }
+  function power(x) {  // 4.0·10⁻¹⁰
+    const [digits, exponent] = x.toExponential(1).split("e");
+    return `${digits}·10${[...exponent.replace("+", "")].map(sign => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(sign)]).join("")}`;
   }
   function asPython() {
     const numbersOf = {start: python(state.ends.start), goal: python(state.ends.goal), ...state.values, conditions: conditions()?.python, wind: windWords()};
     const chosen = live.offers.filter(offer => state.shown.has(offer.name));
     const calls = chosen.map(offer => said(offer.python[value("keep") === 0 && offer.python.length > 1 ? 1 : 0], numbersOf));
-    return [...new Set(chosen.flatMap(offer => offer.imports)), ...(live.flights ? live.flights.imports : []), "", ...calls,
+    return [...new Set(chosen.flatMap(offer => offer.imports)), ...(live.flights?.imports ?? []), "",
+            "routes = {", ...calls.map((call, n) => `    ${JSON.stringify(chosen[n].name)}: ${call},`), "}",
             ...(live.flights ? [said(live.flights.python, numbersOf)] : [])].join("\n");
   }
 
@@ -309,7 +335,7 @@ function playLive(stage, planners, live, buffer) {
   }
   const placeOf = vector => [vector.x, -vector.z, vector.y].map((x, a) => x + live.center[a]);
   function move(end, place) {
-    const to = centreOf(indexOf(place));
+    const to = snapped(place);
     if (to.every((x, a) => x === state.ends[end][a])) return;
     state.ends[end] = to;
     later();
@@ -321,12 +347,12 @@ function playLive(stage, planners, live, buffer) {
     waiting = true;
     requestAnimationFrame(() => { waiting = false; plan(); });
   }
-  const handles = Object.keys(state.ends).map(end => {
-    const element = drawn(end, "#222");
+  const handles = live.ends.map(([end], number) => {
+    const element = drawn(number === 0 ? "start" : number === live.ends.length - 1 ? "goal" : "stopped", "#222");
     element.classList.add("handle");
     element.setAttribute("tabindex", "0");
     element.setAttribute("role", "button");
-    const SVG = element.namespaceURI, name = end === "start" ? "Start" : "Goal";
+    const SVG = element.namespaceURI, name = end[0].toUpperCase() + end.slice(1);
     for (const [kind, path, title] of [["level", "M-14 0a14 14 0 1 0 28 0a14 14 0 1 0-28 0", `${name}: drag it over the map`], ["height", "M0-44l6 8h-4v10h4l-6 8-6-8h4v-10h-4z", `${name}: drag its height`]]) {
       const grip = element.appendChild(document.createElementNS(SVG, "path"));
       grip.setAttribute("d", path);
@@ -358,14 +384,14 @@ function playLive(stage, planners, live, buffer) {
       if (!step) return;
       event.preventDefault();
       event.stopPropagation();
-      move(end, state.ends[end].map((x, a) => x + cell * step[a]));
+      move(end, state.ends[end].map((x, a) => x + (live.curve ? 1 : cell) * step[a]));
     });
     return {end, element};
   });
   stage.after.push(() => {
     for (const {end, element} of handles) {
       put(element, near(state.ends[end]), true);
-      element.setAttribute("aria-label", `${end === "start" ? "Start" : "Goal"} at ${shown(state.ends[end])} m; arrow keys move it, Page Up and Page Down change its height`);
+      element.setAttribute("aria-label", `${end} at ${shown(state.ends[end])} m; arrow keys move it, Page Up and Page Down change its height`);
     }
     for (const cross of crosses) put(cross.element, cross.place, true);
   });
@@ -404,16 +430,16 @@ function playLive(stage, planners, live, buffer) {
   const alone = window.parent === window;
   function outside() { try { return window.parent.location; } catch { return null; } }  // a notebook's frame may not be asked
   function fragment() {
-    const fields = {scene: live.id, start: state.ends.start, goal: state.ends.goal, show: live.offers.map((offer, n) => state.shown.has(offer.name) ? n : null).filter(n => n !== null), ...state.values};
+    const fields = {scene: live.id, ...state.ends, show: live.offers.map((offer, n) => state.shown.has(offer.name) ? n : null).filter(n => n !== null), ...state.values};
     return Object.entries(fields).map(([name, field]) => `${name}=${[field].flat().join(",")}`).join("&");
   }
   function remember() { if (alone) history.replaceState(null, "", `#${fragment()}`); }
   function recall() {
     const fields = new URLSearchParams((alone ? location : outside())?.hash.slice(1) ?? "");
     if (fields.get("scene") !== live.id) return;
-    for (const end of ["start", "goal"]) {
+    for (const [end] of live.ends) {
       const place = fields.get(end)?.split(",").map(Number);
-      if (place?.length === 3 && place.every(Number.isFinite)) state.ends[end] = centreOf(indexOf(place));
+      if (place?.length === 3 && place.every(Number.isFinite)) state.ends[end] = snapped(place);
     }
     for (const {name, least, most} of live.sliders) {
       const number = Number(fields.get(name) ?? NaN);

@@ -1,0 +1,52 @@
+"""What stands beside a live scene: planners, settings, flights, the calls in Python."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from uavlab.plot.colors import Style
+from uavlab.scene.legend import line_of
+from uavlab.scene.live_offers import SLIDERS, Settings
+
+
+def panel(looks: Mapping[str, Style], first: Mapping[str, str], now: Settings, told: Mapping[str, Any]) -> str:
+    """As HTML; `first` is what is said at first of those that are shown."""
+    names = list(looks)
+    rows = "".join(
+        f'<li id="offer-{number}"><label><input type="checkbox"{" checked" * (name in first)}>'
+        f'<svg viewBox="0 0 18 14" aria-hidden="true" style="color:{looks[name].color}">{line_of(looks[name], 4)}</svg>'
+        f'{html.escape(name)}</label><span class="found">{html.escape(first.get(name, ""))}</span>'
+        '<span class="flown" role="status"></span></li>'
+        for number, name in enumerate(names)
+    )
+    sliders = "".join(control(name, value, told["conditions"]) for name, value in now.items())
+    expanded = '<label class="tick"><input type="checkbox" id="expanded">Show expanded voxels</label>'
+    times = told.get("flights", {}).get("total", 0)
+    fly = f'<button id="fly">Fly each {times} times</button>' if times else ""
+    ends = "control points" if "curve" in told else "start and goal"
+    below = '<p id="below" role="status"></p>' if "risk" in told else ""
+    return (
+        f'<section id="live"><ul id="offers">{rows}</ul>'
+        '<p id="wrong" role="alert" hidden><span></span> <button id="instead"></button></p>'
+        f"{below}"
+        f'{sliders}{expanded * told["expansions"]}<p class="acts">{fly}<button id="link">Copy link</button></p>'
+        '<input id="linked" readonly hidden aria-label="Link"><details><summary>As Python</summary>'
+        '<pre id="python" tabindex="0"></pre></details>'
+        f"<p>Drag {ends} over the map, and the arrow above them for their height.</p>"
+        '<p id="lifeless" role="alert" hidden></p></section>'
+    )
+
+
+def control(name: str, value: float, conditions: Sequence[Mapping[str, Any]]) -> str:
+    """A slider, or a list to choose from."""
+    slider = SLIDERS[name]
+    if name == "conditions":
+        options = "".join(f'<option value="{n}">{one["label"]}</option>' for n, one in enumerate(conditions))
+        return f'<label class="set">{slider.label}<select id="set-{name}">{options}</select></label>'
+    return (
+        f'<label class="set">{slider.label} <output id="is-{name}">{value:g}{slider.unit}</output>'
+        f'<input type="range" id="set-{name}" min="{slider.least:g}" max="{slider.most:g}" step="{slider.step:g}" '
+        f'value="{value:g}"></label>'
+    )
