@@ -31,7 +31,7 @@ async function loadPlanners(code, facts) {
       return at;
     },
     NRT_MemInfo_call_dtor: give, NRT_Allocate: take, NRT_Free: give,
-    exp: Math.exp, log1p: Math.log1p, hypot: Math.hypot, sin: Math.sin, acos: Math.acos,
+    exp: Math.exp, log1p: Math.log1p, hypot: Math.hypot, sin: Math.sin, tan: Math.tan, acos: Math.acos,
   };
   const module = await WebAssembly.compile(code);
   const env = {};
