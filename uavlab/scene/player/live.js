@@ -177,7 +177,9 @@ function playLive(stage, planners, live, buffer) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(corners, 3));
     geometry.computeVertexNormals();
-    return new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({color, side: THREE.DoubleSide}));
+    const seen = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({color, side: THREE.DoubleSide}));
+    const through = new THREE.Mesh(geometry.clone(), new THREE.MeshBasicMaterial({color, transparent: true, opacity: 0.3, depthTest: false, depthWrite: false}));
+    return [seen, through];  // what a building hides shows through it, faintly
   }
   function dots(places, color, size, opacity) {
     const geometry = new THREE.BufferGeometry();
@@ -190,11 +192,23 @@ function playLive(stage, planners, live, buffer) {
     return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color, transparent: true, opacity}));
   }
   const crosses = [];  // where flights crashed
+  function stalks() {  // from each end down to the ground below it
+    const ends = [];
+    for (const place of Object.values(state.ends)) {
+      const [i, j, k] = indexOf(place);
+      let low = k;
+      while (low > 0 && !occupied.values[codeOf([i, j, low - 1])]) low--;
+      ends.push(...near(place), ...near([place[0], place[1], live.origin[2] + cell * low]));
+    }
+    const shown = lines(ends, "#222", 0.7);
+    shown.material.depthTest = false;
+    return shown;
+  }
   function drawRoutes(answers) {
-    emptied(objects.routes);
+    emptied(objects.routes).add(stalks());
     emptied(objects.expanded);
     for (const {offer, way, order} of answers) {
-      if (way?.length > 3) objects.routes.add(tube(dashed(cornersOf(way), offer.dashes, live.width), live.width / 2, offer.color));
+      if (way?.length > 3) objects.routes.add(...tube(dashed(cornersOf(way), offer.dashes, live.width), live.width / 2, offer.color));
       if (order && at("expanded").checked) {
         const step = Math.ceil(order.length / 40000), places = [];
         for (let n = 0; n < order.length; n += step) places.push(...near(pointOf(order[n])));
@@ -242,8 +256,8 @@ function playLive(stage, planners, live, buffer) {
     const began = performance.now(), found = planners.curve(control, places.length, live.curve.step, live.curve.bank, clearance, ...walls, origin, cell, points, bends, facts);
     const took = performance.now() - began, [row] = live.offers, fact = facts.values;
     emptied(objects.routes);
-    if (found <= live.room) objects.routes.add(tube(dashed(cornersOf(points.values.slice(0, 3 * found)), row.dashes, live.width), live.width / 2, row.color));
-    objects.routes.add(lines(places.slice(1).flatMap((place, n) => [...near(places[n]), ...near(place)]), "#222", 0.6));
+    if (found <= live.room) objects.routes.add(...tube(dashed(cornersOf(points.values.slice(0, 3 * found)), row.dashes, live.width), live.width / 2, row.color));
+    objects.routes.add(lines(places.slice(1).flatMap((place, n) => [...near(places[n]), ...near(place)]), "#222", 0.6), stalks());
     const words = at("offer-0").querySelector(".found");
     words.textContent = found > live.room ? "the curve is too long for the page" : [`${per(fact[COST], 1)} m`, fact[NEAREST] > 0 ? `clearance ${per(fact[NEAREST], 2)} m` : "it touches a building",
       fact[BEND] > 1e-9 ? `tightest bend ${per(1 / fact[BEND], 1)} m of radius: ${per(fact[FASTEST], 1)} m/s at a bank of ${live.curve.degrees}°` : "straight", `${per(took, 1)} ms`].join(" · ");
