@@ -3,6 +3,7 @@
 Weather, offset, distance to keep, route, curve, feasibility, flights in gusts. Without arguments it takes the city of
 REPARE Table 1 and its case of a light load in mild wind; `--city campus` plans over people, by risk. The page holds the
 3D scene, the profile of height and clearance, and tables of what was measured; it needs neither Jupyter nor a network.
+With `--live` it is a scene in which start, goal and wind are dragged, and planners and flights answer in the page.
 """
 
 from __future__ import annotations
@@ -25,11 +26,13 @@ from uavlab.requirements import require
 from uavlab.whole_way import (
     default_flight,
     heights_of,
+    live_page,
     load_city,
     plan,
     planner_of,
     position_of,
     premises_of,
+    refuse_heights,
     tell_effort,
     try_out,
 )
@@ -142,6 +145,11 @@ def parser() -> argparse.ArgumentParser:
     )
     command.add_argument("--seed", type=int, default=1, metavar="N", help="of the gusts; default %(default)s")
     command.add_argument(
+        "--live",
+        action="store_true",
+        help="write a page in which start, goal and wind are dragged, and the planners answer, in place of the report",
+    )
+    command.add_argument(
         "--out", type=Path, default=Path("uavlab-route.html"), metavar="FILE", help="the page; default %(default)s"
     )
     command.add_argument("--version", action="version", version=f"uavlab {__version__}")
@@ -175,6 +183,8 @@ def run(options: argparse.Namespace) -> int:
     require("meshcat", "scene")  # before any work
     if not 0 <= options.flights <= MOST_FLIGHTS:
         raise ValueError(f"--flights must be from 0 to {MOST_FLIGHTS:,}, got {options.flights:.6g}")
+    if options.live:
+        refuse_heights(options)
     if not 0 <= options.detour < np.inf:
         raise ValueError(f"--detour must be a percentage, finite and at least 0, got {options.detour:g}")
     if Path(options.city).is_file() and options.out.exists() and options.out.samefile(options.city):
@@ -194,6 +204,10 @@ def run(options: argparse.Namespace) -> int:
     asked = (position_of(options, city, name) for name in ("start", "goal"))
     usual = default_flight(city, premises.safe_distance, heights)
     start, goal = (default if point is None else point for point, default in zip(asked, usual, strict=True))
+    if options.live:
+        write(options.out, live_page(options, city, risk_map, start, goal, premises))
+        print(f"{time.perf_counter() - began:.1f} s; open {options.out.resolve()}")
+        return 0
     routes, risk_map = plan(options, city, risk_map, start, goal, premises.safe_distance, heights)
     above_roofs = 0.0 if risk_map is None else risk_map.safe_height
     trial = try_out(routes[0], city, premises, heights, above_roofs, options.flights, options.seed)

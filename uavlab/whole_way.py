@@ -244,3 +244,45 @@ def default_flight(city: City, clearance: float, heights: dict[str, Any]) -> tup
         points[:, 2] += height - city.height_above_ground(points)
     nearest = [free[np.argmin(((city.center_of(free) - point) ** 2).sum(axis=1))] for point in points]
     return city.center_of(nearest[0]), city.center_of(nearest[1])
+
+
+def refuse_heights(options: argparse.Namespace) -> None:
+    """`ValueError` if limits of height or a planner are asked for, which a live page hasn't."""
+    for name in ("min_height", "max_height", "planner"):
+        if getattr(options, name) is not None:
+            raise ValueError(
+                f"--{name.replace('_', '-')} is nothing that a page with --live has: leave one of the two out"
+            )
+
+
+def live_page(
+    options: argparse.Namespace,
+    city: City,
+    risk_map: RiskMap | None,
+    start: np.ndarray,
+    goal: np.ndarray,
+    premises: Premises,
+) -> str:
+    """The page in which planners answer, with the wind and the distance to keep that the report would have."""
+    from uavlab.scene import live
+    from uavlab.scene.live import MOST_FLIGHTS
+    from uavlab.scene.live_offers import SLIDERS
+
+    along, across = premises.wind.mean[:2]
+    asked = {
+        "wind": float(np.hypot(along, across)),
+        "towards": float(np.degrees(np.arctan2(along, across))) % 360,
+        "gusts": premises.wind.deviation,
+        "keep": min(premises.safe_distance, float(city.clearance[tuple(city.cell_of([start, goal]).T)].min())),
+    }
+    if risk_map is not None:
+        del asked["keep"]
+    settings = {}
+    for name, value in asked.items():
+        slider = SLIDERS[name]
+        settings[name] = float(np.clip(slider.step * np.floor(value / slider.step + 1e-9), slider.least, slider.most))
+    names = ["A*", "Theta*", "hazard A*", "potential field"] if risk_map is None else ["least risk", "shortest"]
+    return live(
+        city, start, goal, planners=names, shown=names[:3], settings=settings, risk=risk_map, uav=premises.uav,
+        flights=min(options.flights, MOST_FLIGHTS), expansions=risk_map is None,
+    ).page  # fmt: skip
