@@ -715,6 +715,15 @@ CALLS = {
     "risk.vehicle_rate": lambda: {"share": 0.25},
     "risk.vehicle_share": lambda: {"cars_per_km": 0.125, "lane_width": 3.0},
     # scene
+    "scene.live": lambda: {
+        "city": TOWN, "start": START, "goal": GOAL, "planners": ["A*", "Dijkstra"], "shown": ["A*"],
+        "settings": {"keep": 0.5}, "risk": None, "flights": 3, "expansions": True, "uav": DRONE,
+        "colors": {"A*": "#0072B2"}, "camera": "side", "height": 300, "title": "a town",
+    },
+    "scene.live_curve": lambda: {
+        "city": TOWN, "control": WAY, "step": 0.5, "bank": 0.5, "color": "#0072B2", "camera": "side", "height": 300,
+        "title": "a town",
+    },
     "scene.page": lambda: {
         **shown(), "flights": [FLIGHT], "camera": "chase", "start_paused": True, "start_at": 0.5, "title": "a town",
     },

@@ -64,3 +64,8 @@ def decoded(place, content):
     folded = (planes.astype(np.int64) * np.array([1, 256, 256**2, 256**3])[:, None]).sum(axis=0)
     change = np.where(folded % 2 == 0, folded // 2, -(folded + 1) // 2)
     return np.cumsum(change.reshape(place["columns"], place["rows"]), axis=1).T / place["parts"]
+
+
+def unpacked(page, name):
+    """One of the things that a page keeps packed, as bytes."""
+    return gzip.decompress(base64.b64decode(re.search(rf'[{{ ]{name}: "([^"]*)"', page)[1]))

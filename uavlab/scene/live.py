@@ -88,7 +88,7 @@ def live(
     risk : RiskMap, optional
         Of the same city: paints the ground, and has planners of its own.
     flights : int
-        How often a button flies each route, at most 1000; 200 is usual, 0 leaves it out. They are the flights of
+        How often a button flies each route, 0 (there is none) to 1000; 200 is usual. They are the flights of
         `monte_carlo(..., rng=0)`.
     expansions : bool
         Offer to draw the voxels that searches expand.
@@ -136,8 +136,8 @@ def live(
             raise ValueError("risk must be a map of this city: give risk.city as the city")
     if title is not None:
         checks.text("title", title)
-    names = checked_offers(planners, risk)
-    first = names if shown is None else checked_offers(shown, risk)
+    names = checked_offers("planners", planners, risk)
+    first = names if shown is None else checked_offers("shown", shown, risk)
     if not set(first) <= set(names):
         raise ValueError(f"shown: {sorted(set(first) - set(names))} aren't among planners")
     flights, expansions = checks.whole("flights", flights, 0, MOST_FLIGHTS), checks.flag("expansions", expansions)
@@ -155,8 +155,7 @@ def live(
     routes = [replace(OFFERS[name].plan(where, *ends, now), planner=name) for name in names if name in first]
     drawing = drawing_with(city, routes, looks, risk, title)
     if flights:
-        own = uav != LIGHT_QUADROTOR
-        told["flights"] = flights_told(flights, uav, "uav" if own else "LIGHT_QUADROTOR", kept)
+        told["flights"] = flights_told(flights, uav, kept)
     told |= {
         "ends": [["start", ends[0].tolist()], ["goal", ends[1].tolist()]],
         "offers": [offer_told(name, looks[name], name in first) for name in names],
@@ -176,7 +175,7 @@ def live_curve(
     city: City,
     control: npt.ArrayLike,
     *,
-    step: float = 0.5,
+    step: float = Curve.step,
     bank: float = BANK,
     color: str = BLUE,
     camera: Camera = "overview",
@@ -263,7 +262,7 @@ def scene_of(
     picture, words = png_of(picture_of(drawing, camera, 0.0, 1.0), DPI), words_of(drawing)
     drawing.legend = [entry for entry in drawing.legend if entry.kind != "line"]
     told |= {
-        "id": hashlib.sha256(repr((drawing.title, told["shape"], told["ends"], list(looks))).encode()).hexdigest()[:8],
+        "id": hashlib.sha256(compact([drawing.title, told["shape"], told["ends"], list(looks)])).hexdigest()[:8],
         "center": drawing.center.tolist(), "width": width_of(drawing), "room": ROOM, "crash": CRASH_COLOR,
         "arrays": kept.places,
     }  # fmt: skip

@@ -164,16 +164,18 @@ def conditions_told() -> list[dict[str, Any]]:
     return told
 
 
-def checked_offers(planners: Sequence[str], risk: RiskMap | None) -> list[str]:
-    """Names of planners that a page has, each once; those that plan by risk need a risk map, the others none."""
-    if isinstance(planners, str) or not isinstance(planners, Sequence) or len(planners) == 0:
-        raise ValueError(f"planners must be a list of names, such as ['A*', 'REPARE'], got {planners!r:.60}")
-    for name in planners:
-        checks.one_of("planners", name, list(OFFERS))
+def checked_offers(argument: str, names: Sequence[str], risk: RiskMap | None) -> list[str]:
+    """Names of planners that a page has; those that plan by risk need a risk map, the others none."""
+    if isinstance(names, str) or not isinstance(names, Sequence) or len(names) == 0:
+        raise ValueError(f"{argument} must be a list of names, such as ['A*', 'REPARE'], got {names!r:.60}")
+    for number, name in enumerate(names):
+        checks.one_of(argument, name, list(OFFERS))
+        if name in names[:number]:
+            raise ValueError(f"{argument}: {name!r} stands there twice")
         if (OFFERS[name].kind == "risk") != (risk is not None):
             needed = "needs risk=..., a risk map" if risk is None else "doesn't know of people: leave risk=... out"
-            raise ValueError(f"planners: {name!r} {needed}")
-    return list(dict.fromkeys(planners))
+            raise ValueError(f"{argument}: {name!r} {needed}")
+    return list(names)
 
 
 def settings_of(names: Sequence[str], flown: bool, asked: Mapping[str, float] | None) -> Settings:

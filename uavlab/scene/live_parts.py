@@ -15,7 +15,7 @@ from uavlab.risk import RiskMap
 from uavlab.spline.curve import CONTACT
 from uavlab.spline.limits import MAX_PITCH
 from uavlab.statistics import share_interval
-from uavlab.vehicle import UAV
+from uavlab.vehicle import LIGHT_QUADROTOR, UAV
 from uavlab.weather import rain_force, wind_limit
 from uavlab.weather.envelope import CREEP, steady_air_speed
 from uavlab.weather.wind import Wind
@@ -78,11 +78,12 @@ def risk_told(risk: RiskMap, kept: Bytes) -> tuple[dict[str, Any], np.ndarray]:
     return told, query.blocked
 
 
-def flights_told(count: int, uav: UAV, uav_name: str, kept: Bytes) -> dict[str, Any]:
+def flights_told(count: int, uav: UAV, kept: Bytes) -> dict[str, Any]:
     """What flights in a page need; their random numbers are those of `monte_carlo(..., rng=0)`."""
     calm, autopilot = Wind((0.0, 0.0), deviation=0.0), Autopilot()
     kept.add("states", np.array([state_of(one) for one in np.random.default_rng(0).spawn(count)]))
     kept.add("intervals", np.array([share_interval(crashed, count) for crashed in range(count + 1)]))
+    known = "LIGHT_QUADROTOR" if uav == LIGHT_QUADROTOR else "uav"
     rain = float(rain_force(0.0, uav.rain_area))
     return {
         "total": count, "craft": craft_of(uav, calm, autopilot, TIME_STEP).tolist(), "speed": uav.cruise_speed,
@@ -90,8 +91,11 @@ def flights_told(count: int, uav: UAV, uav_name: str, kept: Bytes) -> dict[str, 
         "every": round(LOG_EVERY / TIME_STEP), "memory": calm.correlation,
         "gust": float(wind_limit(uav, rain, air_density=calm.air_density)),
         "head": steady_air_speed(uav, rain, calm.air_density) - CREEP,
-        "imports": ["from uavlab.flight import crash_rate, monte_carlo", "from uavlab.weather import Wind"],
+        "imports": [
+            "from uavlab.flight import crash_rate, monte_carlo", "from uavlab.weather import Wind",
+            *(["from uavlab.vehicle import LIGHT_QUADROTOR"] if uav == LIGHT_QUADROTOR else []),
+        ],
         "python": f"wind = Wind({{wind}}, deviation={{gusts}})\n"
         "for name, route in routes.items():\n"
-        f"    print(name, crash_rate(monte_carlo(route, city, {uav_name}, wind, rng=0, flights={count})))",
+        f"    print(name, crash_rate(monte_carlo(route, city, {known}, wind, rng=0, flights={count})))",
     }  # fmt: skip

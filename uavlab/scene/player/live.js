@@ -262,7 +262,7 @@ function playLive(stage, planners, live, buffer) {
     words.textContent = found > live.room ? "the curve is too long for the page" : [`${per(fact[COST], 1)} m`, fact[NEAREST] > 0 ? `clearance ${per(fact[NEAREST], 2)} m` : "it touches a building",
       fact[BEND] > 1e-9 ? `tightest bend ${per(1 / fact[BEND], 1)} m of radius: ${per(fact[FASTEST], 1)} m/s at a bank of ${live.curve.degrees}°` : "straight", `${per(took, 1)} ms`].join(" · ");
     words.dataset.length = String(fact[COST]);
-    at("python").textContent = `from uavlab.spline import Curve\n\ncurve = Curve([\n${places.map(place => `    ${python(place)},`).join("\n")}\n])\nprint(curve.length, curve.clearance(city), curve.level_curvature.max())`;
+    at("python").textContent = `from uavlab.spline import Curve\n\ncurve = Curve([\n${places.map(place => `    ${python(place)},`).join("\n")}\n], step=${live.curve.step})\nprint(curve.length, curve.clearance(city), curve.level_curvature.max())`;
     remember();
     viewer.set_dirty();
     document.body.dataset.planned = String(Number(document.body.dataset.planned ?? 0) + 1);
@@ -469,6 +469,7 @@ function playLive(stage, planners, live, buffer) {
   recall();
   showValues();
   plan();
+  viewer.render();
   document.body.dataset.live = "yes";
 }
 
