@@ -721,7 +721,7 @@ CALLS = {
         "colors": {"A*": "#0072B2"}, "camera": "side", "height": 300, "title": "a town",
     },
     "scene.live_curve": lambda: {
-        "city": TOWN, "control": WAY, "step": 0.5, "bank": 0.5, "color": "#0072B2", "camera": "side", "height": 300,
+        "city": TOWN, "control": WAY, "step": 0.5, "bank": 0.5, "colors": {"curve": "#0072B2"}, "camera": "side", "height": 300,
         "title": "a town",
     },
     "scene.page": lambda: {

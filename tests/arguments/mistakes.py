@@ -127,6 +127,7 @@ RIGHTFUL = {
     "city.read_no_fly.upper": {"an unknown one"},
     "plot.in_flight.flights": {"a list"},  # by number
     "scene.page.flights": {"a mapping"},
+    "scene.live.flights": {"zero"},  # without a button
     "scene.show.flights": {"a list"},
     "scene.still.flights": {"a list"},
     "plot.styles.names": {"nothing", "twice"},  # two things of one name

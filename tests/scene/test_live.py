@@ -139,7 +139,7 @@ def test_a_city_too_large_is_told_a_cell_that_fits():
         ({"step": 0.001}, "step must leave at most 20,000 points"),
         ({"step": 0.0}, "step must be "),
         ({"bank": 2.0}, "bank must be "),
-        ({"color": "none such"}, "must be a colour"),
+        ({"colors": {"curve": "none such"}}, "must be a colour"),
     ],
 )
 def test_wrong_curves_are_named(city, wrong, words):

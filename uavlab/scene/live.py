@@ -17,7 +17,7 @@ from uavlab.planners.astar import NO_WAY
 from uavlab.planners.least_risk import NO_SAFE_WAY
 from uavlab.planners.potential_field import REASONS
 from uavlab.planners.question import checked_position
-from uavlab.plot.colors import BLUE, CRASH_COLOR, Style, styles
+from uavlab.plot.colors import CRASH_COLOR, Style, styles
 from uavlab.plot.pictures import png_of
 from uavlab.plot.style import DPI
 from uavlab.risk import RiskMap
@@ -177,7 +177,7 @@ def live_curve(
     *,
     step: float = Curve.step,
     bank: float = BANK,
-    color: str = BLUE,
+    colors: Mapping[str, str] | None = None,
     camera: Camera = "overview",
     height: int = 560,
     title: str | None = None,
@@ -195,10 +195,8 @@ def live_curve(
         As for `uavlab.spline.Curve` [m].
     bank : float
         [rad], between 0 and π/2; 30° is usual.
-    color : str
-        Of the curve.
-    camera, height
-        As for `show`.
+    colors, camera, height
+        As for `show`; the curve's name is "curve".
     title : str, optional
         Of the page; by default the city's name.
 
@@ -210,7 +208,7 @@ def live_curve(
     ------
     ValueError
         If `city` is no `City` or has over 6 million voxels; `control` isn't 3 to 40 points on the map; `step` is not
-        above 0 or too short for the page; `bank` is not between 0 and π/2; `color` is none; `title` is no text; or
+        above 0 or too short for the page; `bank` is not between 0 and π/2; `colors` are none by name; `title` is no text; or
         `camera` or `height` is wrong as for `show`.
     RuntimeError
         If the module of planners was made for another version of the library.
@@ -229,6 +227,8 @@ def live_curve(
     """
     height = checks.whole("height", height, 1, MOST_PIXELS)
     checks.instance("city", city, City)
+    if title is not None:
+        checks.text("title", title)
     points = checks.array("control", control, None, 3)
     if not 3 <= len(points) <= MOST_CONTROL or not city.inside(points).all():
         raise ValueError(
@@ -241,7 +241,7 @@ def live_curve(
             f"step must leave at most {ROOM:,} points, got {step:g} m, which makes {len(curve.parameter):,}"
         )
     bank = checked_bank(bank)
-    look = styles(["curve"], {"curve": color})[0]
+    look = styles(["curve"], colors)[0]
     kept = Bytes()
     told = city_told(city, city.in_no_fly, kept) | {
         "ends": [[f"point {number}", point] for number, point in enumerate(points.tolist())],
