@@ -721,8 +721,8 @@ CALLS = {
         "colors": {"A*": "#0072B2"}, "camera": "side", "height": 300, "title": "a town",
     },
     "scene.live_curve": lambda: {
-        "city": TOWN, "control": WAY, "step": 0.5, "bank": 0.5, "colors": {"curve": "#0072B2"}, "camera": "side", "height": 300,
-        "title": "a town",
+        "city": TOWN, "control": WAY, "step": 0.5, "bank": 0.5, "colors": {"curve": "#0072B2"}, "camera": "side",
+        "height": 300, "title": "a town",
     },
     "scene.page": lambda: {
         **shown(), "flights": [FLIGHT], "camera": "chase", "start_paused": True, "start_at": 0.5, "title": "a town",

@@ -319,15 +319,12 @@ def put_forces(field, point, pull, push):
     pushed = 0.0
     nearest = reach
     nx, ny, nz = field.occupied.shape
-    for a in range(max(math.floor((point[0] - reach) / cell), 0), min(math.floor((point[0] + reach) / cell) + 1, nx)):
+    low, high, bottom, top = *within(point[1], reach, cell, ny), *within(point[2], reach, cell, nz)
+    for a in range(*within(point[0], reach, cell, nx)):
         x = point[0] - min(max(point[0], a * cell), (a + 1) * cell)  # from the voxel's nearest point
-        for b in range(
-            max(math.floor((point[1] - reach) / cell), 0), min(math.floor((point[1] + reach) / cell) + 1, ny)
-        ):
+        for b in range(low, high):
             y = point[1] - min(max(point[1], b * cell), (b + 1) * cell)
-            for c in range(
-                max(math.floor((point[2] - reach) / cell), 0), min(math.floor((point[2] + reach) / cell) + 1, nz)
-            ):
+            for c in range(bottom, top):
                 if not field.occupied[a, b, c]:
                     continue
                 z = point[2] - min(max(point[2], c * cell), (c + 1) * cell)
@@ -344,6 +341,12 @@ def put_forces(field, point, pull, push):
                 push[2] += z * size
                 pushed += 0.5 * field.push * (1 / apart - 1 / reach) ** 2
     return potential + pushed
+
+
+@compiled
+def within(x, reach, cell, count):
+    """The first of so many voxels along an axis that are within reach of a coordinate, and where they end."""
+    return max(math.floor((x - reach) / cell), 0), min(math.floor((x + reach) / cell) + 1, count)
 
 
 @compiled

@@ -26,7 +26,7 @@ from uavlab.scene.camera import Camera
 from uavlab.scene.content import draw_routes, signs, width_of
 from uavlab.scene.drawing import Drawing
 from uavlab.scene.legend import words_of
-from uavlab.scene.live_offers import OFFERS, SLIDERS, Settings, checked_offers, conditions_told, settings_of
+from uavlab.scene.live_offers import OFFERS, Settings, checked_offers, conditions_told, settings_of, sliders_told
 from uavlab.scene.live_panel import panel
 from uavlab.scene.live_parts import Bytes, city_told, flights_told, risk_told
 from uavlab.scene.pages import MOST_PIXELS, Scene
@@ -128,14 +128,7 @@ def live(
     <Scene: page of ... kB, 640 pixels high>
     """
     height = checks.whole("height", height, 1, MOST_PIXELS)
-    checks.instance("city", city, City)
-    checks.instance("uav", uav, UAV)
-    if risk is not None:
-        checks.instance("risk", risk, RiskMap)
-        if risk.city is not city:
-            raise ValueError("risk must be a map of this city: give risk.city as the city")
-    if title is not None:
-        checks.text("title", title)
+    check_things(city, risk, uav, title)
     names = checked_offers("planners", planners, risk)
     first = names if shown is None else checked_offers("shown", shown, risk)
     if not set(first) <= set(names):
@@ -158,17 +151,23 @@ def live(
         told["flights"] = flights_told(flights, uav, kept)
     told |= {
         "ends": [["start", ends[0].tolist()], ["goal", ends[1].tolist()]],
-        "offers": [offer_told(name, looks[name], name in first) for name in names],
-        "sliders": [
-            {"name": name, "value": value, "least": SLIDERS[name].least, "most": SLIDERS[name].most,
-             "unit": SLIDERS[name].unit, "plans": SLIDERS[name].plans}
-            for name, value in now.items()
-        ],
+        "offers": [offer_told(name, looks[name], name in first) for name in names], "sliders": sliders_told(now),
         "conditions": conditions_told() if "conditions" in now else [], "expansions": expansions,
         "words": {"no_way": NO_WAY, "no_risk": NO_SAFE_WAY, "field": REASONS},
     }  # fmt: skip
     said = {route.planner: f"{route.length:.1f} m" if route.reached else route.reason for route in routes}
     return scene_of(drawing, looks, said, now, told, kept, camera, height)
+
+
+def check_things(city: City, risk: RiskMap | None, uav: UAV, title: str | None) -> None:
+    checks.instance("city", city, City)
+    checks.instance("uav", uav, UAV)
+    if risk is not None:
+        checks.instance("risk", risk, RiskMap)
+        if risk.city is not city:
+            raise ValueError("risk must be a map of this city: give risk.city as the city")
+    if title is not None:
+        checks.text("title", title)
 
 
 def live_curve(
@@ -208,8 +207,8 @@ def live_curve(
     ------
     ValueError
         If `city` is no `City` or has over 6 million voxels; `control` isn't 3 to 40 points on the map; `step` is not
-        above 0 or too short for the page; `bank` is not between 0 and π/2; `colors` are none by name; `title` is no text; or
-        `camera` or `height` is wrong as for `show`.
+        above 0 or too short for the page; `bank` is not between 0 and π/2; `colors` are none by name; `title` is no
+        text; or `camera` or `height` is wrong as for `show`.
     RuntimeError
         If the module of planners was made for another version of the library.
 

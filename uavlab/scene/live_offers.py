@@ -193,3 +193,13 @@ def settings_of(names: Sequence[str], flown: bool, asked: Mapping[str, float] | 
         least, most, unit = SLIDERS[name].least, SLIDERS[name].most, SLIDERS[name].unit.strip()
         settings[name] = checks.number(f"settings[{name!r}]", value, checks.within, least, most, unit)
     return settings
+
+
+def sliders_told(now: Settings) -> list[dict[str, Any]]:
+    """Settings as the page has them."""
+    told = []
+    for name, value in now.items():
+        slider = SLIDERS[name]
+        ends = {"least": slider.least, "most": slider.most, "unit": slider.unit, "plans": slider.plans}
+        told.append({"name": name, "value": value, **ends})
+    return told

@@ -16,7 +16,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -114,16 +114,37 @@ def main() -> None:
 def build(wasm: Path = WASM, facts: Path = FACTS) -> None:
     """Write the module, and beside it what made it and what its functions take."""
     import llvmlite
-    import llvmlite.binding as llvm
     import numba
 
     if shutil.which("wasm-ld") is None:
         raise RuntimeError("wasm-ld isn't there: it links the module; on Debian it comes with the package lld")
+    chosen = functions()
+    with tempfile.TemporaryDirectory() as folder:
+        compiled = Path(folder, "planners.o")
+        compiled.write_bytes(machine_code(chosen))
+        exports = [f"--export={name}" for name in (*chosen, "__heap_base")]
+        options = ["--no-entry", "--allow-undefined", "--gc-sections", "--strip-all", *exports]
+        subprocess.run(["wasm-ld", *options, "-o", str(wasm), str(compiled)], check=True)
+    wasm.chmod(0o644)
+    linker = subprocess.run(["wasm-ld", "--version"], capture_output=True, text=True, check=True).stdout
+    made_by = {"uavlab": __version__, "numba": numba.__version__, "llvmlite": llvmlite.__version__}
+    made_by["lld"] = re.findall(r"[\d.]+\d", linker)[0]
+    signatures = {}
+    for name, function in chosen.items():
+        takes = [[argument, *kind_of(hint)] for argument, hint in arguments_of(function).items()]
+        signatures[name] = {"takes": takes, "gives": kind_of(result_of(function))[0]}
+    digest = hashlib.sha256(wasm.read_bytes()).hexdigest()
+    facts.write_text(json.dumps({"made_by": made_by, "digest": digest, "functions": signatures}) + "\n")
+
+
+def machine_code(chosen: Mapping[str, Any]) -> bytes:
+    """The functions and all that they call, optimised for WebAssembly, as an object file."""
+    import llvmlite.binding as llvm
+
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     machine = llvm.Target.from_triple(TARGET).create_target_machine(opt=3)
     head = f'target datalayout = "{machine.target_data}"\ntarget triple = "{TARGET}"\n'
-    chosen = functions()
     whole = llvm.parse_assembly(head)
     for name, function in chosen.items():
         whole.link_in(llvm.parse_assembly(head + intermediate(name, function)))
@@ -140,26 +161,7 @@ def build(wasm: Path = WASM, facts: Path = FACTS) -> None:
     whole.link_in(llvm.parse_assembly(head + RUNTIME))
     hide_all_but(whole, chosen)
     passes.getModulePassManager().run(whole, passes)
-    with tempfile.TemporaryDirectory() as folder:
-        compiled = Path(folder, "planners.o")
-        compiled.write_bytes(machine.emit_object(whole))
-        exports = [f"--export={name}" for name in (*chosen, "__heap_base")]
-        options = ["--no-entry", "--allow-undefined", "--gc-sections", "--strip-all", *exports]
-        subprocess.run(["wasm-ld", *options, "-o", str(wasm), str(compiled)], check=True)
-    wasm.chmod(0o644)
-    linker = subprocess.run(["wasm-ld", "--version"], capture_output=True, text=True, check=True).stdout
-    made_by = {
-        "uavlab": __version__,
-        "numba": numba.__version__,
-        "llvmlite": llvmlite.__version__,
-        "lld": re.findall(r"[\d.]+\d", linker)[0],
-    }
-    signatures = {}
-    for name, function in chosen.items():
-        takes = [[argument, *kind_of(hint)] for argument, hint in arguments_of(function).items()]
-        signatures[name] = {"takes": takes, "gives": kind_of(result_of(function))[0]}
-    digest = hashlib.sha256(wasm.read_bytes()).hexdigest()
-    facts.write_text(json.dumps({"made_by": made_by, "digest": digest, "functions": signatures}) + "\n")
+    return machine.emit_object(whole)
 
 
 def functions() -> dict[str, Any]:
