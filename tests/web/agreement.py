@@ -77,7 +77,7 @@ def set_zone(town, safe_distance, penalty):
 
 def zone_agrees(town, start, goal, price, heuristic, min_clearance=0.0):
     route = astar(town.city, start, goal, price=price, heuristic=heuristic, min_clearance=min_clearance, record=True)
-    answer = town.astar(start, goal, heuristic, min_clearance, priced=True, record=True)
+    answer = town.astar(start, goal, heuristic, min_clearance, float(price.min()), record=True)
     same(answer, route, town.city)
     assert np.array_equal(answer.order, route.info["order"])
     return route
@@ -97,7 +97,7 @@ def hazard_agrees(town, start, goal, sigma, uav_diameter, speed, natural_frequen
     on_grid, straight = (
         hazard_astar(town.city, start, goal, any_angle=any_angle, **asked) for any_angle in (False, True)
     )
-    answer = town.astar(start, goal, min_clearance=uav_diameter / 2, priced=True)
+    answer = town.astar(start, goal, min_clearance=uav_diameter / 2, cheapest=1.0)
     equal = []
     for route in (on_grid, straight):
         equal.append(np.array_equal(answer.points, route.points))
@@ -126,7 +126,7 @@ def set_repare(town, load, disturbance, force_weight=1.0, load_weight=1.0, readi
 
 def repare_agrees(town, start, goal, load, disturbance):
     route = repare(town.city, start, goal, load=load, disturbance=disturbance, record=True)
-    answer = town.astar(start, goal, min_clearance=LIGHT_QUADROTOR.diameter / 2, priced=True, record=True)
+    answer = town.astar(start, goal, min_clearance=LIGHT_QUADROTOR.diameter / 2, cheapest=1.0, record=True)
     same(answer, route, town.city)
     assert np.array_equal(answer.order, route.info["order"])
 

@@ -173,8 +173,9 @@ class Town:
     def codes(self, *points):
         return [int(self.city.code_of(self.city.cell_of(point))) for point in points]
 
-    def astar(self, start, goal, heuristic="octile", min_clearance=0.0, priced=False, record=False):
-        name, price = ("astar_priced", [self.price]) if priced else ("astar", [])
+    def astar(self, start, goal, heuristic="octile", min_clearance=0.0, cheapest=None, record=False):
+        """With a cheapest price, at the price that is set."""
+        name, price = ("astar", []) if cheapest is None else ("astar_priced", [self.price, cheapest])
         order = self.order if record else self.nothing
         return self.asked(
             name, self.blocked(min_clearance), *price, HEURISTICS[heuristic], *self.codes(start, goal), self.origin,
@@ -246,7 +247,7 @@ class Town:
             "curve", passed, len(control), step, self.clearance, *self.walls, self.origin, self.city.cell, self.points,
             bend, self.facts,
         )  # fmt: skip
-        facts, found = self.side.values(self.facts), (self.side.values(one, count) for one in (self.points, bend))
+        facts, found = self.side.values(self.facts), [self.side.values(one, count) for one in (self.points, bend)]
         self.side.free(passed, bend)
         return *found, facts[COST], facts[NEAREST]
 
