@@ -153,22 +153,27 @@ def field_agrees(town, start, goal, free, push, reach, most=2000):
     return route
 
 
-def least_risk_agrees(town, risk_map, start, goal, weights, max_turn=MAX_TURN, max_pitch=MAX_PITCH):
-    """With weights of risk, length and threat, and whether risk counts where the wreck lands."""
-    names = ("risk_weight", "length_weight", "threat_weight", "drift")
-    route = least_risk(
-        risk_map, start, goal, **dict(zip(names, weights, strict=True)), max_turn=max_turn, max_pitch=max_pitch
-    )
-    limits = checked_limits(risk_map, max_turn, max_pitch, 0.0, None, np.inf)
-    price = price_per_cell(risk_map, Weights.checked(*weights))
-    query = query_of(risk_map, price, *town.codes(start, goal), limits)
-    arrays = [town.side.array(array) for array in (query.blocked, query.price, query.climb, query.turn)]
-    answer = town.least_risk(*arrays, query.source, query.target)
-    same(answer, route, town.city)
-    rate = town.side.array(risk_map.rate)
+class Risk:
+    """A risk map on one side, at a price by weights of risk, length and threat, and drift or not."""
+
+    def __init__(self, town, risk_map, weights):
+        self.town, self.risk_map, self.weights = town, risk_map, weights
+        self.price = town.side.array(price_per_cell(risk_map, Weights.checked(*weights)))
+        self.rate = town.side.array(risk_map.rate)
+
+
+def least_risk_agrees(risk, start, goal, max_turn=MAX_TURN, max_pitch=MAX_PITCH):
+    town, names = risk.town, ("risk_weight", "length_weight", "threat_weight", "drift")
+    asked = dict(zip(names, risk.weights, strict=True)) | {"max_turn": max_turn, "max_pitch": max_pitch}
+    route = least_risk(risk.risk_map, start, goal, **asked)
+    limits = checked_limits(risk.risk_map, max_turn, max_pitch, 0.0, None, np.inf)
+    query = query_of(risk.risk_map, np.empty((1, 0)), *town.codes(start, goal), limits)
+    blocked, climb, turn = (town.side.array(array) for array in (query.blocked, query.climb, query.turn))
+    same(town.least_risk(blocked, risk.price, climb, turn, query.source, query.target), route, town.city)
     if route.reached:
-        assert town.integral(len(route.points), rate) == NEARLY(risk_map.integral(route) * town.city.cell, rel=1e-12)
-    town.side.free(rate, *arrays)
+        integral = town.integral(len(route.points), risk.rate)
+        assert integral == NEARLY(route.integral(town.city, risk.risk_map.rate), rel=1e-12)
+    town.side.free(blocked, climb, turn)
     return route
 
 

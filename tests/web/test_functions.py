@@ -6,6 +6,7 @@
 import numpy as np
 import pytest
 from agreement import (
+    Risk,
     astar_agrees,
     curve_agrees,
     field_agrees,
@@ -85,7 +86,8 @@ def test_potential_field(town, free):
 
 def test_least_risk():
     campus = random_campus(3)
-    assert least_risk_agrees(Town(InPython(), campus.city), campus, *CAMPUS_FLIGHT, (1.0, 1e-7, 0.0, False)).reached
+    risk = Risk(Town(InPython(), campus.city), campus, (1.0, 1e-7, 0.0, False))
+    assert least_risk_agrees(risk, *CAMPUS_FLIGHT).reached
 
 
 def test_integral(town):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from agreement import (
     NEARLY,
+    Risk,
     astar_agrees,
     curve_agrees,
     field_agrees,
@@ -27,11 +28,16 @@ from towns import random_city, random_ends, small_cities, with_zones
 
 from uavlab.city import City
 from uavlab.flight import PERFECT_GPS, Autopilot, fly, monte_carlo
+from uavlab.flight.simulation import setup_of
 from uavlab.planners import astar, penalty_zone, theta_star
+from uavlab.planners.risk_question import MAX_TURN
 from uavlab.resilience import ADVANCED
 from uavlab.risk import CAMPUS_FLIGHT, random_campus
+from uavlab.spline.limits import MAX_PITCH
 from uavlab.vehicle import LIGHT_QUADROTOR, RISK_QUADROTOR
 from uavlab.weather import Wind
+from uavlab.web.craft import craft_of
+from uavlab.web.generator import state_of
 
 FINE, COARSE = 100, 10
 """Pairs in Table 1's city at 1 m, and in each of the small cities."""
@@ -164,32 +170,38 @@ def test_potential_field(fine, small, free):
     """It arrives, is trapped, crashes, flies where it may not, and gives up."""
     rng, reasons = np.random.default_rng(61), set()
     for pair in fine.city.random_pairs(FINE, rng=62):
-        reasons.add(field_agrees(fine, *pair, free, 5.0, 5.0).reason[:20])
+        reasons.add(field_agrees(fine, *pair, free, 5.0, 5.0).reason[:14])
     for town in small:
         for pair in random_ends(town.city, COARSE, rng):
             push, reach = rng.uniform(0.01, 8.0), rng.uniform(1.0, 6.0)
-            reasons.add(field_agrees(town, *pair, free, push, reach, int(rng.choice([5, 50, 2000]))).reason[:20])
-    assert len(reasons) == (5 if free else 3), reasons
+            reasons.add(field_agrees(town, *pair, free, push, reach, int(rng.choice([5, 50, 2000]))).reason[:14])
+    endings = {"", "stuck in a loc", "gave up after "}
+    assert reasons == (endings | {"flies into an ", "flies where it"} if free else endings)
+
+
+WEIGHTS = (
+    (1.0, 0.0, 0.0, False), (0.0, 1.0, 0.0, False), (1.0, 1e-7, 0.0, False), (0.0, 0.5, 0.2, False),
+    (1.0, 2e-8, 1e-7, True),
+)  # fmt: skip
+"""Of risk, length and threat; and whether risk counts where the wreck lands."""
 
 
 def test_least_risk(side):
     """Over risk, length, threat and drift, with limits on turns and climb, some of which leave no way."""
     rng, reached = np.random.default_rng(71), []
-    choices = (
-        (1.0, 0.0, 0.0, False), (1.0, 1e-7, 0.0, False), (0.0, 1.0, 0.0, False), (0.0, 0.5, 0.2, False),
-        (1.0, 0.0, 0.0, True), (1.0, 2e-8, 1e-7, True),
-    )  # fmt: skip
     for seed in range(10):
-        campus = random_campus(seed, cell=5.0 if seed < 7 else 3.7)
-        town = Town(side, campus.city)
+        campus = random_campus(seed, cell=5.0 if seed else 4.0)
+        questions = [Risk(Town(side, campus.city), campus, weights) for weights in WEIGHTS[seed % 2 :: 2]]
         allowed = np.flatnonzero(campus.flyable)
-        pairs = [CAMPUS_FLIGHT, *(town.city.center_of(town.city.index_of(rng.choice(allowed, 2))) for _ in range(29))]
+        pairs = [
+            CAMPUS_FLIGHT,
+            *(campus.city.center_of(campus.city.index_of(rng.choice(allowed, 2))) for _ in range(31)),
+        ]
         for n, pair in enumerate(pairs):
-            limits = (np.pi / 3, np.pi / 3) if n % 3 else (rng.choice([0.0, 0.8, 3.2]), rng.choice([0.1, 0.7, 1.6]))
-            limits = [min(limit, most) for limit, most in zip(limits, (np.pi, np.pi / 2), strict=True)]
-            if town.codes(pair[0]) != town.codes(pair[1]):
-                reached.append(least_risk_agrees(town, campus, *pair, choices[n % 6], *limits).reached)
-    assert len(reached) >= 295
+            limits = (rng.uniform(0.0, np.pi), rng.uniform(0.0, np.pi / 2)) if n % 8 == 7 else (MAX_TURN, MAX_PITCH)
+            if (campus.city.cell_of(pair[0]) != campus.city.cell_of(pair[1])).any():
+                reached.append(least_risk_agrees(questions[n % len(questions)], *pair, *limits).reached)
+    assert len(reached) >= 300
     assert 0 < np.mean(reached) < 1
 
 
@@ -223,7 +235,7 @@ def test_curves(fine, small):
         )
         if n % 5 == 0 and count > 3:
             control[2] = control[1]
-        curve_agrees(town, control, float(rng.choice([0.1, 0.5, 2.0])))
+        curve_agrees(town, control, float(rng.choice([0.2, 0.5, 2.0])))
 
 
 def test_a_curve_with_more_points_than_there_is_room_for(fine):
@@ -297,8 +309,6 @@ def test_flights(flown):
 
 def test_a_flight_is_logged_every_so_many_steps_and_at_its_end(fine):
     route, wind, autopilot = way_of([(5, 5, 90), (30, 5, 90)]), Wind((2, 1)), Autopilot()
-    from agreement import craft_of, setup_of, state_of
-
     setup, _ = setup_of(route, fine.city, LIGHT_QUADROTOR, wind, autopilot, 0.02)
     craft, space = craft_of(LIGHT_QUADROTOR, wind, autopilot, 0.02), setup.obstacles
 
