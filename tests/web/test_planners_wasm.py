@@ -208,9 +208,8 @@ def test_least_risk(side):
 def test_integrals(fine, small):
     rng = np.random.default_rng(81)
     for town in (fine, *small):
-        values = rng.random(town.city.shape)
-        for pair in random_ends(town.city, 3, rng):
-            integral_agrees(town, *pair, values)
+        for size, pair in zip((1e-9, 1.0, 1e9), random_ends(town.city, 3, rng), strict=True):
+            integral_agrees(town, *pair, size * rng.random(town.city.shape))
 
 
 def test_the_nearest_free_point(small):
@@ -397,6 +396,7 @@ def test_blocks_of_memory_don_t_overlap(browser):
         ("planners.nearest(flags, point, point, '1')", "nearest: cell must be a number"),
         ("planners.nearest(flags, point, point, point)", "nearest: cell must be a number"),
         ("planners.nearest(point, point, point, 1)", "nearest: blocked must be boolean with 3 axes"),
+        ("planners.nearest(few, point, point, 1)", "nearest: blocked must be boolean with 3 axes"),
         ("planners.nearest(flags, [1, 2, 3], point, 1)", "nearest: point must be float64 with 1 axes"),
         ("planners.nearest(flags, flags, point, 1)", "nearest: point must be float64 with 1 axes"),
         ("planners.nearest(flags, undefined, point, 1)", "nearest: point must be float64 with 1 axes"),
