@@ -193,7 +193,7 @@ def intermediate(name: str, function: Any) -> str:
     exec(f"def {name}({', '.join(taken)}):\n    return function({', '.join(passed)})", namespace)
     entry = njit(error_model="numpy")(namespace[name])
     entry.compile(tuple(types_taken))
-    (result,) = entry.overloads.values()
+    result: Any = next(iter(entry.overloads.values()))
     text = result.library.get_llvm_str().replace(result.fndesc.llvm_func_name, name)
     for unwanted, instead in REWRITTEN:
         text = re.sub(unwanted, instead, text, flags=re.DOTALL)

@@ -88,7 +88,7 @@ def close(occupied: Flags3, closed: Flags3, clearance: Floats3, min_clearance: f
     blocked, shut, kept = out.ravel(), closed.ravel(), clearance.ravel()
     for n in range(len(blocked)):  # counting in here is miscompiled for CPUs with AVX: a fourth isn't written
         blocked[n] = shut[n] or kept[n] < least
-    return np.count_nonzero(out)
+    return int(np.count_nonzero(out))
 
 
 @compiled
