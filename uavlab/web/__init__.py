@@ -1,0 +1,1 @@
+"""Planners and flights as WebAssembly, for pages that answer: made from the functions that the library compiles."""
