@@ -6,14 +6,15 @@ It is a process of its own because a notebook's tests talk to a kernel at the sa
 
 import io
 import json
-import shutil
 import sys
 from pathlib import Path
 
 import matplotlib.image
 import numpy as np
-from conftest import FLAGS
 from playwright.sync_api import sync_playwright
+
+sys.path.append(str(Path(__file__).parents[1]))  # where pytest looks, too
+from chromium import FLAGS, chromium_path
 
 SECONDS = 60_000
 
@@ -113,9 +114,8 @@ def opened(browser, path):
 
 
 def main():
-    executable = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))))
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=executable, args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=chromium_path(), args=FLAGS)
         for line in sys.stdin:
             print(json.dumps({"problems": opened(browser, Path(json.loads(line)["html"]))}), flush=True)
         browser.close()

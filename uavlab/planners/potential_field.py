@@ -319,7 +319,8 @@ def put_forces(field, point, pull, push):
     pushed = 0.0
     nearest = reach
     nx, ny, nz = field.occupied.shape
-    low, high, bottom, top = *within(point[1], reach, cell, ny), *within(point[2], reach, cell, nz)
+    low, high = within(point[1], reach, cell, ny)
+    bottom, top = within(point[2], reach, cell, nz)
     for a in range(*within(point[0], reach, cell, nx)):
         x = point[0] - min(max(point[0], a * cell), (a + 1) * cell)  # from the voxel's nearest point
         for b in range(low, high):

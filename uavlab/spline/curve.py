@@ -13,16 +13,18 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.route import PROMISES, Route, check_promises, promises_of
 from uavlab.spline.basis import checked_count, checked_derivative, with_ends
-from uavlab.spline.sampling import AT_REST, curvature_vectors, points_at, sagittas, speed_in_turn, steps_on
-
-CORNER = 1e-4
-"""Where it stands still and its direction changes by more than this [rad], it has a corner; less is rounding."""
+from uavlab.spline.sampling import (
+    bends_at,
+    curvature_vectors,
+    points_at,
+    sagittas,
+    speed_in_turn,
+    steps_on,
+    tangents_of,
+)
 
 BANK = np.radians(30.0)
 """What a turn may take, as is usual for multirotors [rad]."""
-
-UNRESOLVED = 0.5
-"""A change of direction between two points [rad] in which the curvature of neither may be the greatest."""
 
 MOST_POINTS = 10**7
 """At which a curve may be measured; more take all of the memory."""
@@ -285,13 +287,7 @@ class Curve:
     @cached_property
     def tangent(self) -> np.ndarray:
         """Unit vectors along the curve at each point, (P, 3); where it stands still, as it goes on from there."""
-        speed = np.linalg.norm(self.velocity, axis=1)
-        moving = np.flatnonzero(speed > AT_REST)
-        if len(moving) == 0:
-            return np.zeros_like(self.velocity)
-        following = np.searchsorted(moving, np.arange(len(speed)))
-        there = moving[np.minimum(following, len(moving) - 1)]
-        return self.velocity[there] / speed[there, None]
+        return tangents_of(self.velocity)
 
     @cached_property
     def bend(self) -> np.ndarray:
@@ -300,17 +296,7 @@ class Curve:
         A corner is where the curve stands still and goes on in another direction, as at a point that stands three
         times. A turn that is too tight for `step` to resolve counts as even between the two points.
         """
-        bend = curvature_vectors(self.velocity, self.acceleration)
-        at_rest = np.isnan(bend).any(axis=1)
-        bend = np.where(at_rest[:, None], 0.0, bend)
-        before = np.concatenate([self.tangent[:1], self.tangent[:-1]])
-        turn = self.tangent - before
-        size = np.linalg.norm(turn, axis=1)
-        even = turn / np.maximum(np.diff(self.distance, prepend=-1.0), 1e-9)[:, None]
-        bend = np.where((size > UNRESOLVED)[:, None], even, bend)
-        corner = at_rest & (size > CORNER)
-        inwards = np.where(np.abs(turn) > CORNER / 2, np.copysign(np.inf, turn), 0.0)
-        return np.where(corner[:, None], inwards, bend)
+        return bends_at(self.points, self.velocity, self.acceleration)
 
     @cached_property
     def curvature(self) -> np.ndarray:

@@ -19,6 +19,12 @@ FACTORS = np.array([[1, 1, 1, 1], [3, 2, 1, 0], [6, 2, 0, 0]])
 AT_REST = 1e-9
 """A curve that runs fewer metres than this per segment stands still."""
 
+CORNER = 1e-4
+"""Where it stands still and its direction changes by more than this [rad], it has a corner; less is rounding."""
+
+UNRESOLVED = 0.5
+"""A change of direction between two points [rad] in which the curvature of neither may be the greatest."""
+
 
 @compilable
 def speed_in_turn(curvature, bank):
@@ -105,6 +111,43 @@ def curvature_vectors(velocity, acceleration):
         if speed > AT_REST:
             tangent = velocity[n] / speed
             bends[n] = (acceleration[n] - (acceleration[n] * tangent).sum() * tangent) / speed**2
+    return bends
+
+
+@compiled
+def tangents_of(velocity):
+    """Unit vectors along the curve (P, 3); see `Curve.tangent`."""
+    tangents, there = np.zeros(velocity.shape), -1
+    for n in range(len(velocity)):
+        if length(velocity[n]) > AT_REST:
+            there = n
+    for n in range(len(velocity) - 1, -1, -1):
+        if length(velocity[n]) > AT_REST:
+            there = n
+        if there >= 0:
+            tangents[n] = velocity[there] / length(velocity[there])
+    return tangents
+
+
+@compiled
+def bends_at(points, velocity, acceleration):
+    """Curvature vectors at each point (P, 3) [1/m]; see `Curve.bend`."""
+    bends, tangents = curvature_vectors(velocity, acceleration), tangents_of(velocity)
+    flown = 0.0
+    for n in range(len(bends)):
+        at_rest = np.isnan(bends[n, 0])
+        if at_rest:
+            bends[n] = 0.0
+        if n == 0:
+            continue
+        before, turn = flown, tangents[n] - tangents[n - 1]
+        flown += length(points[n] - points[n - 1])
+        size = length(turn)
+        if size > UNRESOLVED:
+            bends[n] = turn / max(flown - before, 1e-9)
+        if at_rest and size > CORNER:
+            for a in range(points.shape[1]):
+                bends[n, a] = math.copysign(np.inf, turn[a]) if abs(turn[a]) > CORNER / 2 else 0.0
     return bends
 
 

@@ -65,7 +65,7 @@ def craft_of(uav: UAV, wind: Wind, autopilot: Autopilot, time_step: float) -> np
     if autopilot.monitor is not None and autopilot.strategy != "fixed":
         raise ValueError("autopilot must have no monitor that is listened to: on a page nothing changes its controller")
     flown = flown_by(uav, autopilot.controller)
-    anywhere = constant_speed(Route([(0, 0, 0), (1, 0, 0)]), 1.0)
+    anywhere = constant_speed(Route(np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])), 1.0)
     body, _ = model_of(wind, autopilot.controller, flown, autopilot, anywhere, 0.0, time_step).parts
     named = body._asdict() | vehicle_in(flown, wind)._asdict()
     named |= {"gps_level": body.gps_enter[0], "gps_up": body.gps_enter[2]}

@@ -35,7 +35,7 @@ from uavlab.planners.theta_star import WEIGHT as STRAIGHT_WEIGHT
 from uavlab.planners.theta_star import Query as StraightQuery
 from uavlab.planners.theta_star import Tree as StraightTree
 from uavlab.planners.theta_star import pulled_taut, straight_nodes
-from uavlab.spline.sampling import curvature_vectors, mirrored, points_at, sagittas, speed_in_turn, steps_on
+from uavlab.spline.sampling import bends_at, mirrored, points_at, sagittas, speed_in_turn, steps_on
 from uavlab.weather.wind import GUST_SHARES
 from uavlab.web.generator import Stream
 
@@ -85,12 +85,11 @@ def put_runs(occupied: Flags3, first: Longs1, low: Ints1, high: Ints1, inner: Fl
 @compiled
 def close(occupied: Flags3, closed: Flags3, clearance: Floats3, min_clearance: float, cell: float, out: Flags3) -> int:
     """Where a route may not be; how many voxels that are."""
-    least, count = least_kept(min_clearance, cell), 0
+    least = least_kept(min_clearance, cell)
     blocked, shut, kept = out.ravel(), closed.ravel(), clearance.ravel()
-    for n in range(len(blocked)):
+    for n in range(len(blocked)):  # counting in here is miscompiled for CPUs with AVX: a fourth isn't written
         blocked[n] = shut[n] or kept[n] < least
-        count += blocked[n]
-    return count
+    return int(np.count_nonzero(out))
 
 
 @compiled
@@ -100,12 +99,14 @@ def nearest(blocked: Flags3, point: Floats1, origin: Floats1, cell: float) -> in
 
 
 @compiled
-def price_zone(clearance: Floats3, distance: float, penalty: float, cell: float, price: Floats3) -> int:
-    """`penalty_zone`."""
+def price_zone(clearance: Floats3, distance: float, penalty: float, cell: float, price: Floats3) -> float:
+    """`penalty_zone`; the cheapest."""
     out, known = price.ravel(), clearance.ravel()
+    cheapest = np.inf
     for n in range(len(out)):
         out[n] = price_in_zone(known[n], distance, penalty, cell)
-    return 0
+        cheapest = min(cheapest, out[n])
+    return cheapest
 
 
 @compiled
@@ -136,21 +137,24 @@ def astar(
 ) -> int:  # fmt: skip
     """`astar` between two codes: how many points, 0 if there is no way; `order` takes expanded nodes."""
     query = Query(blocked, False, heuristic, ASTAR_TIE_BREAK, start, goal)
-    return written(cheapest(query, None, order, facts), blocked, origin, cell, points, order, facts)
+    return written(searched(query, None, order, facts), blocked, origin, cell, points, order, facts)
 
 
 @compiled
 def astar_priced(
-    blocked: Flags3, price: Floats3, heuristic: int, start: int, goal: int, origin: Floats1, cell: float,
-    points: Floats2, order: Ints1, facts: Floats1,
+    blocked: Flags3, price: Floats3, cheapest: float, heuristic: int, start: int, goal: int, origin: Floats1,
+    cell: float, points: Floats2, order: Ints1, facts: Floats1,
 ) -> int:  # fmt: skip
-    """The same with a price."""
-    query = Query(blocked, False, heuristic, price.min() * ASTAR_TIE_BREAK, start, goal)
-    return written(cheapest(query, price, order, facts), blocked, origin, cell, points, order, facts)
+    """The same with a price, and one that none is below, with which the estimate counts.
+
+    That is the least for `astar`, and 1 for `hazard_astar` and `repare`.
+    """
+    query = Query(blocked, False, heuristic, cheapest * ASTAR_TIE_BREAK, start, goal)
+    return written(searched(query, price, order, facts), blocked, origin, cell, points, order, facts)
 
 
 @compiled
-def cheapest(query, price, order, facts):
+def searched(query, price, order, facts):
     """Nodes, cost [cells], expansions and their order, if there is room for any."""
     count = query.blocked.size
     tree = Tree(np.empty(count), np.zeros(count, np.uint8))
@@ -267,18 +271,20 @@ def least_risk(
     """`least_risk` between two codes, with its limits of turns and climbs; how many points, 0 if there is no way."""
     query = RiskQuery(blocked, price, climb, turn, start, goal)
     rest, expanded = rest_of_cost(query, start, waiting_list(blocked.size))
+    facts[COST], facts[EXPANDED] = np.inf, expanded
     if rest[start] == np.inf:
-        facts[EXPANDED] = expanded
         return 0
     states = blocked.size * STATES
     g, parent = np.empty(states), np.zeros(states, np.uint8)
     last, more = search_states(query, rest, g, parent, waiting_list(states))
+    facts[EXPANDED] += more
     if last < 0:
-        facts[EXPANDED] = expanded + more
         return 0
     nodes = trace_states(query, parent, last)
-    found = nodes, g[last] / cell, expanded + more, nodes[:0]
-    return written(found, blocked, origin, cell, points, np.empty(0, np.int32), facts)
+    found = nodes, 0.0, expanded + more, nodes[:0]
+    count = written(found, blocked, origin, cell, points, np.empty(0, np.int32), facts)
+    facts[COST] = g[last]  # its prices are per cell
+    return count
 
 
 @compiled
@@ -308,7 +314,7 @@ def curve(
     first: Longs1, low: Ints1, high: Ints1, inner: Flags1, origin: Floats1, cell: float,
     points: Floats2, bend: Floats1, facts: Floats1,
 ) -> int:  # fmt: skip
-    """A cubic B-spline through both ends of its control points: how many points; `bend` takes their curvature."""
+    """A cubic B-spline through both ends of its control points: how many points; `bend` their curvature, level."""
     padded = np.empty((count + 2, 3))
     padded[1:-1] = control[:count]
     padded[0], padded[-1] = mirrored(control[0], control[1]), mirrored(control[count - 1], control[count - 2])
@@ -318,7 +324,7 @@ def curve(
     way, velocity = points_at(padded, parameter, 0), points_at(padded, parameter, 1)
     acceleration = points_at(padded, parameter, 2)
     way[0], way[-1] = control[0], control[count - 1]
-    bends = curvature_vectors(velocity, acceleration)
+    bends = bends_at(way, velocity, acceleration)
     for n in range(len(way)):
         points[n] = way[n]
         bend[n] = np.hypot(bends[n, 0], bends[n, 1])

@@ -61,17 +61,17 @@ function playLive(stage, planners, live, buffer) {
   const SOLVERS = {
     astar: (offer, ends) => planners.astar(blockedAt(value("keep")), offer.heuristic, ...ends, origin, cell, points, order, facts),
     zone(offer, ends) {
-      planners.price_zone(clearance, value("keep"), value("omega"), cell, price);
-      return planners.astar_priced(blockedAt(0), price, 1, ...ends, origin, cell, points, order, facts);
+      const cheapest = planners.price_zone(clearance, value("keep"), value("omega"), cell, price);
+      return planners.astar_priced(blockedAt(0), price, cheapest, 1, ...ends, origin, cell, points, order, facts);
     },
     hazard(offer, ends) {
       planners.price_hazard(clearance, value("sigma"), offer.radius, offer.price, price);
-      return straightened(planners.astar_priced(blockedAt(offer.radius), price, 1, ...ends, origin, cell, points, order, facts), offer.radius);
+      return straightened(planners.astar_priced(blockedAt(offer.radius), price, 1, 1, ...ends, origin, cell, points, order, facts), offer.radius);
     },
     repare(offer, ends) {
       const {distance, penalty, blown, loaded} = conditions();
       planners.price_repare(clearance, distance, penalty, blown, loaded, cell, price);
-      return planners.astar_priced(blockedAt(offer.radius), price, 1, ...ends, origin, cell, points, order, facts);
+      return planners.astar_priced(blockedAt(offer.radius), price, 1, 1, ...ends, origin, cell, points, order, facts);
     },
     theta: (offer, ends) => planners.thetastar(blockedAt(value("keep")), value("keep"), live.slack, ...ends, origin, cell, ...walls, ...zones, points, facts),
     field(offer, ends, places) {
