@@ -46,8 +46,7 @@ from uavlab.risk import CAMPUS_FLIGHT, random_campus
 from uavlab.spline.limits import MAX_PITCH
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Wind
-from uavlab.web.craft import craft_of
-from uavlab.web.generator import state_of
+from uavlab.web.craft import craft_of, state_of
 
 Question = Callable[[Town, Any], object]
 """What a town is asked of a case, such as a start and a goal."""

@@ -30,8 +30,7 @@ from uavlab.route import Route
 from uavlab.spline import Curve
 from uavlab.spline.limits import MAX_PITCH
 from uavlab.vehicle import LIGHT_QUADROTOR
-from uavlab.web.craft import craft_of
-from uavlab.web.generator import state_of
+from uavlab.web.craft import craft_of, state_of
 
 NEARLY = pytest.approx
 ENDINGS = {

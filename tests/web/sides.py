@@ -14,8 +14,9 @@ import numpy as np
 
 from uavlab.city.bounds import slack_of
 from uavlab.planners.grid import HEURISTICS
+from uavlab.spline.curve import BANK
 from uavlab.web import functions
-from uavlab.web.functions import COST, ENERGY, EXPANDED, NEAREST, OUTCOME, REACHED, RECORDED
+from uavlab.web.functions import COST, ENERGY, EXPANDED, FACTS, NEAREST, OUTCOME, REACHED, RECORDED
 
 KINDS = {"bool": "boolean", "int32": "int32", "int64": "int64", "uint64": "uint64", "float64": "float64"}
 
@@ -151,7 +152,7 @@ class Town:
         self.clearance, self.price = side.empty(float, city.shape), side.empty(float, city.shape)
         side.call("clear", self.occupied, city.cell, self.clearance)
         self.walls, self.zones = self.runs_of(self.occupied), self.runs_of(side.array(city.in_no_fly))
-        self.facts, self.points = side.empty(float, 8), side.empty(float, (most, 3))
+        self.facts, self.points = side.empty(float, FACTS), side.empty(float, (most, 3))
         self.order = side.empty(np.int32, city.occupied.size)
         self.nothing = side.empty(np.int32, 0)
         self.closed_at = {}
@@ -244,8 +245,8 @@ class Town:
         control = np.asarray(control, float)
         passed, bend = self.side.array(control), self.side.empty(float, self.points.shape[0])
         count = self.side.call(
-            "curve", passed, len(control), step, self.clearance, *self.walls, self.origin, self.city.cell, self.points,
-            bend, self.facts,
+            "curve", passed, len(control), step, BANK, self.clearance, *self.walls, self.origin, self.city.cell,
+            self.points, bend, self.facts,
         )  # fmt: skip
         facts, found = self.side.values(self.facts), [self.side.values(one, count) for one in (self.points, bend)]
         self.side.free(passed, bend)

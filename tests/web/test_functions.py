@@ -31,8 +31,7 @@ from uavlab.resilience import ADVANCED, ConditionCheck, Monitor
 from uavlab.risk import CAMPUS_FLIGHT, random_campus
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Wind
-from uavlab.web.craft import craft_of
-from uavlab.web.functions import CRAFT
+from uavlab.web.craft import CRAFT, craft_of
 
 ENDS = (5.0, 5.0, 30.0), (95.0, 95.0, 30.0)
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from uavlab.web.generator import Stream, multiplied, next_double, next_word, normal_from, state_of
+from uavlab.web.craft import state_of
+from uavlab.web.generator import Stream, multiplied, next_double, next_word, normal_from
 
 MANY = 2_000_000
 """Normal numbers; one of 2 700 comes from the ziggurat's tail, one of 70 is looked at twice."""

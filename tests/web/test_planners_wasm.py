@@ -36,8 +36,7 @@ from uavlab.risk import CAMPUS_FLIGHT, random_campus
 from uavlab.spline.limits import MAX_PITCH
 from uavlab.vehicle import LIGHT_QUADROTOR, RISK_QUADROTOR
 from uavlab.weather import Wind
-from uavlab.web.craft import craft_of
-from uavlab.web.generator import state_of
+from uavlab.web.craft import craft_of, state_of
 
 FINE, COARSE = 100, 10
 """Pairs in Table 1's city at 1 m, and in each of the small cities."""
@@ -409,7 +408,7 @@ def test_wrong_calls_are_told(side, call, message):
         flags: planners.empty("boolean", 2, 2, 2), point: planners.empty("float64", 3),
         way: planners.empty("float64", 4, 3), field: planners.empty("float64", 2, 2, 2),
         longs: planners.empty("int64", 5), ints: planners.empty("int32", 0),
-        few: planners.empty("boolean", 0), facts: planners.empty("float64", 8),
+        few: planners.empty("boolean", 0), facts: planners.empty("float64", 10),
     })""")
     with pytest.raises(Exception, match=message):
         side.page.evaluate(f"() => {{ {call}; }}")

@@ -19,8 +19,7 @@ from uavlab.vehicle import LIGHT_QUADROTOR, UAV
 from uavlab.weather import rain_force, wind_limit
 from uavlab.weather.envelope import CREEP, steady_air_speed
 from uavlab.weather.wind import Wind
-from uavlab.web.craft import craft_of
-from uavlab.web.generator import state_of
+from uavlab.web.craft import craft_of, state_of
 
 MOST_VOXELS = 6_000_000
 """Of a city in a page: its planners take up to 70 bytes for each."""

@@ -12,11 +12,16 @@ from uavlab.flight.simulation import flown_by
 from uavlab.route import Route
 from uavlab.vehicle import UAV
 from uavlab.weather import Wind
-from uavlab.web.functions import CRAFT
+
+CRAFT = (
+    "mass", "thrust", "drag", "tan_tilt", "rain", "disc", "profile", "efficiency", "charge", "omega", "pace",
+    "gps_fixes", "gps_keep", "gps_level", "gps_up", "gps_velocity", "held", "fastest", "climb", "sink",
+)  # fmt: skip
+"""Numbers of a vehicle and its autopilot, as `Body` and `Vehicle` have them."""
 
 
 def craft_of(uav: UAV, wind: Wind, autopilot: Autopilot, time_step: float) -> np.ndarray:
-    """Numbers of a vehicle and its autopilot in a wind's air and rain, in the order of `functions.CRAFT`.
+    """Numbers of a vehicle and its autopilot in a wind's air and rain, in the order of `CRAFT`.
 
     Parameters
     ----------
@@ -49,8 +54,7 @@ def craft_of(uav: UAV, wind: Wind, autopilot: Autopilot, time_step: float) -> np
     >>> from uavlab.vehicle import LIGHT_QUADROTOR
     >>> from uavlab.weather import Wind
     >>> from uavlab.web.craft import craft_of
-    >>> from uavlab.web.functions import CRAFT
-    >>> craft = craft_of(LIGHT_QUADROTOR, Wind((6, 0)), Autopilot(), 0.02)
+    >>>     >>> craft = craft_of(LIGHT_QUADROTOR, Wind((6, 0)), Autopilot(), 0.02)
     >>> {name: round(float(craft[CRAFT.index(name)]), 2) for name in ("mass", "thrust", "climb")}
     {'mass': 1.5, 'thrust': 28.0, 'climb': 5.0}
     """
@@ -70,3 +74,12 @@ def craft_of(uav: UAV, wind: Wind, autopilot: Autopilot, time_step: float) -> np
     named = body._asdict() | vehicle_in(flown, wind)._asdict()
     named |= {"gps_level": body.gps_enter[0], "gps_up": body.gps_enter[2]}
     return np.array([named[name] for name in CRAFT], dtype=float)
+
+
+def state_of(generator: np.random.Generator) -> np.ndarray:
+    """The state of a `numpy.random.default_rng`, (4,) uint64."""
+    known = generator.bit_generator.state
+    if known["bit_generator"] != "PCG64":
+        raise ValueError(f"generator must be a default_rng, which is a PCG64, got a {known['bit_generator']}")
+    words = [known["state"][name] >> shift & (2**64 - 1) for name in ("state", "inc") for shift in (64, 0)]
+    return np.array(words, dtype=np.uint64)

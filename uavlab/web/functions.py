@@ -54,11 +54,8 @@ COST, EXPANDED, REACHED, RECORDED, OUTCOME, STEPS, NEAREST, ENERGY, BEND, FASTES
 are recorded, how a walk or a flight ended, its logged steps, least distance to obstacles [m], energy used [J], and
 of a curve the greatest curvature on the plan [1/m] and the speed [m/s] at which a bank angle holds it."""
 
-CRAFT = (
-    "mass", "thrust", "drag", "tan_tilt", "rain", "disc", "profile", "efficiency", "charge", "omega", "pace",
-    "gps_fixes", "gps_keep", "gps_level", "gps_up", "gps_velocity", "held", "fastest", "climb", "sink",
-)  # fmt: skip
-"""Numbers of a vehicle and its autopilot, as `Body` and `Vehicle` have them."""
+FACTS = FASTEST + 1
+"""How many there are."""
 
 
 @compiled
@@ -349,7 +346,7 @@ def fly(
 ) -> int:  # fmt: skip
     """A flight of `fly` in a wind with memory, by an autopilot that knows the mean; how many rows it would log.
 
-    `craft` is the vehicle and its autopilot as numbers, see `CRAFT`; `state` that of the flight's generator.
+    `craft` is the vehicle and its autopilot, see `uavlab.web.craft.CRAFT`; `state` that of the flight's generator.
     """
     c = craft
     vehicle = Vehicle(c[0], c[16], c[2], c[17], c[18], c[19])

@@ -43,15 +43,6 @@ def standard_normal_of(stream):
     return None
 
 
-def state_of(generator: np.random.Generator) -> np.ndarray:
-    """The state of a `numpy.random.default_rng`, (4,) uint64."""
-    known = generator.bit_generator.state
-    if known["bit_generator"] != "PCG64":
-        raise ValueError(f"generator must be a default_rng, which is a PCG64, got a {known['bit_generator']}")
-    words = [known["state"][name] >> shift & (2**64 - 1) for name in ("state", "inc") for shift in (64, 0)]
-    return np.array(words, dtype=np.uint64)
-
-
 @compiled
 def normal_from(state):
     """One standard normal number."""
