@@ -11,6 +11,7 @@ import llvmlite
 import numba
 import pytest
 
+from uavlab import __version__
 from uavlab.web import build as building
 from uavlab.web.build import FACTS, WASM, arguments_of, build, functions, intermediate, kind_of, main, result_of
 
@@ -68,7 +69,12 @@ def test_the_committed_module_is_what_the_functions_give(tmp_path, facts):
     if shutil.which("wasm-ld") is None:
         pytest.skip(WITHOUT_LINKER)
     linker = subprocess.run(["wasm-ld", "--version"], capture_output=True, text=True, check=True).stdout
-    here = {"numba": numba.__version__, "llvmlite": llvmlite.__version__, "lld": re.findall(r"[\d.]+\d", linker)[0]}
+    here = {
+        "uavlab": __version__,
+        "numba": numba.__version__,
+        "llvmlite": llvmlite.__version__,
+        "lld": re.findall(r"[\d.]+\d", linker)[0],
+    }
     if here != facts["made_by"]:
         pytest.skip(f"planners.wasm was made by {facts['made_by']}, here are {here}: other bytes would say nothing")
     wasm, json_ = tmp_path / "planners.wasm", tmp_path / "planners.json"
