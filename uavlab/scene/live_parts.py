@@ -90,7 +90,11 @@ def flights_told(count: int, uav: UAV, uav_name: str, kept: Bytes) -> dict[str, 
         "every": round(LOG_EVERY / TIME_STEP), "memory": calm.correlation,
         "gust": float(wind_limit(uav, rain, air_density=calm.air_density)),
         "head": steady_air_speed(uav, rain, calm.air_density) - CREEP,
-        "imports": ["from uavlab.flight import crash_rate, monte_carlo", "from uavlab.weather import Wind"],
+        "imports": [
+            "from uavlab.flight import crash_rate, monte_carlo",
+            *(["from uavlab.vehicle import LIGHT_QUADROTOR"] if uav_name == "LIGHT_QUADROTOR" else []),
+            "from uavlab.weather import Wind",
+        ],
         "python": f"wind = Wind({{wind}}, deviation={{gusts}})\n"
         "for name, route in routes.items():\n"
         f"    print(name, crash_rate(monte_carlo(route, city, {uav_name}, wind, rng=0, flights={count})))",
