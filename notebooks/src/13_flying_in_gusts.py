@@ -593,7 +593,7 @@ print("  in the storm with perfect GPS than with drifting GPS:", fewer(others[4]
 #   But the storm's flights also last longer, 29 s instead of 20 s: not by the weather, but because the body slows in
 #   turns (28 s in calm air).
 # - *Shown, too:* GPS in calm air is *less* bad than the offsets that were assumed (all 7 pairs). Its $\sigma$ is
-#   smaller for the first 25 s, and the error is slow. (On the longer far route 10 of 1 000 crashed.)
+#   smaller for the first 25 s, and the error is slow.
 # - *Not shown:* that drifting GPS makes the storm worse (11 of 18 pairs), or that rough offsets are worse than those
 #   assumed: in the same fine steps 18 and 12 of 1 000 flights crash (11 of 16 pairs, [41 %, 89 %]).
 # - *Shown for hazard A\*:* it crashes less often than REPARE in each new weather but calm air, also where its formula
@@ -675,8 +675,7 @@ limited_now, climbs = laden.column("thrust")[1:] > 0.999 * heavy.thrust, np.diff
 assert np.mean(climbs[limited_now]) > 0.9
 
 # %% [markdown]
-# *One flight of each case, with gusts and perfect GPS. Thrust jumps where the reference turns, and where a climb starts
-# or ends.* Of a hundred flights each:
+# *One flight of each case, with gusts and perfect GPS.* Of a hundred flights each:
 #
 # - **Light load, mild wind:** the paper's drone "hardly deviates from the route". Ours is at most 1.3 m to the side,
 #   but the worst flight keeps 2.2 of 3.5 m.
@@ -811,45 +810,41 @@ for name, share in inside.items():
 #
 # > **Predict first.** The autopilot knows the mean wind exactly. So does the mean wind matter, if the gusts stay the
 # > same?
+#
+# > **Play.** A\* keeps 2 m here, and hazard A\* plans for $\sigma = 1.2$ m. Let each fly in a mean wind of 6 m/s, then in
+# > more. From which mean wind on does A\* crash more often, with intervals apart?
 
-
-# %% tags=["figure"]
-def turn(speed=6.0, gusts=3.0, gps="drifts"):
-    """Crash rates of 200 flights of each route out of the notch."""
-    wind = Wind((speed, 0.0), deviation=gusts, correlation=3.0)
-    autopilot = Autopilot(gps=GPS if gps == "drifts" else PERFECT_GPS, heeds_limits=False)  # flies in any wind
-    found = {}
-    for planner in three:
-        runs = monte_carlo(routes["notch"][planner], city, uav, wind, autopilot, rng=13, flights=200, time_step=0.04)
-        found[planner] = {"": crash_rate(runs)}
-    figure, axes = plot.new_figure(7.6, 2.6)
-    plot.intervals(found, "crashes per 1 000 flights", axes=axes,
-                   title=f"Wind {speed:g} m/s from the west, gusts of {gusts:g} m/s, GPS: {gps}")  # fmt: skip
-    axes.set_xscale("symlog", linthresh=10, linscale=0.4)
-    axes.set(xlim=(-2, 1300), yticks=[], xticks=[0, 10, 100, 1000], xticklabels=["0", "10", "100", "1 000"])
-    return figure
-
-
-labels = {"speed": "mean wind [m/s]", "gusts": "σ of the gusts [m/s]", "gps": "GPS"}
-plot.sliders(turn, title="crash rates out of the notch", labels=labels, speed=[0, 6, 9], gusts=[0, 3, 5],
-             gps=["perfect", "drifts"], start={"speed": 6, "gusts": 3, "gps": "drifts"}, progress=False)  # fmt: skip
-
-# %% tags=["nbval-check-output"]
-brave, way = Autopilot(heeds_limits=False), routes["notch"]["REPARE"]
-for speed in (0.0, 9.0):
-    wind = Wind((speed, 0.0), deviation=5.0, correlation=3.0)
-    flights = monte_carlo(way, city, uav, wind, brave, rng=13, flights=500, time_step=0.04)
-    spread = flights.samples[:, 0].std()
-    print(f"mean wind {speed:g} m/s, gusts of 5 m/s, GPS drifts: σ across {spread:.1f} m", end="; ")
-    print(f"REPARE's flights crash {crash_rate(flights)}")
+# %%
+offered, drawn = ["A*", "REPARE", "hazard A*"], ["A*", "hazard A*"]
+first_values = {"keep": 2.0, "sigma": 1.2, "wind": 6.0, "gusts": 3.0}
+scene.live(city, *notch, planners=offered, shown=drawn, settings=first_values, flights=200)
 
 # %% [markdown]
-# *Crashes per 1 000 flights of each route, with exact 95 % intervals of 200 flights; linear below 10. The drone flies
-# even in wind that would keep it on the ground (`heeds_limits`).* The mean wind matters. One reason: a gust $u$ along a
-# stream of air $V$ changes the drag by a multiple of $2Vu + u^2$, so it pushes harder where the stream is faster. With
-# gusts of 5 m/s $\sigma$ across the route grows from 1.0 to 1.6 m, and 42 [26, 64] of 1 000 flights of REPARE crash
-# without a mean wind, and 100 [75, 130] at 9 m/s.
+# *The two routes out of the notch. Here GPS drifts, and gusts have a memory of 1 s.* From 10 m/s on: 50 [24, 90]
+# of 1 000 flights of A\* crash, and 0 [0, 18] of hazard A\*'s. At 6 m/s it is 25 [8, 57] against 0 [0, 18]: not shown.
 #
+# So the mean wind matters. A gust $u$ along a stream of air $V$ changes the drag by a multiple of $2Vu + u^2$, so it
+# pushes harder where the stream is faster.
+
+# %% tags=["check"]
+ends = np.add(notch, 0.5)  # centres of voxels, as the page has them
+played = {"A*": astar(city, *ends, min_clearance=2.0), "hazard A*": hazard_astar(city, *ends, sigma=1.2)}
+
+
+def in_the_page(name, speed):
+    """Crashes per 1 000 flights, with the interval's ends."""
+    wind = Wind((speed, 0.0), deviation=3.0)
+    rate = crash_rate(monte_carlo(played[name], city, LIGHT_QUADROTOR, wind, rng=0, flights=200))
+    return [round(value) for value in (rate.per_thousand, rate.low, rate.high)]
+
+
+assert [in_the_page("A*", speed) for speed in (6.0, 10.0)] == [[25, 8, 57], [50, 24, 90]]
+assert [in_the_page("hazard A*", speed) for speed in (6.0, 10.0)] == [[0, 0, 18]] * 2
+apart = [in_the_page("A*", speed)[1] > in_the_page("hazard A*", speed)[2] for speed in np.arange(8.0, 14.5, 0.5)]
+assert apart == [False] * 4 + [True] * 9
+assert in_the_page("A*", 14.0)[1] > in_the_page("A*", 0.0)[2]  # the mean wind matters
+
+# %% [markdown]
 # ## Remember
 #
 # - A drone on autopilot is a damped spring that gusts shake: $\sigma^2$ is the integral of $S_u\lvert H\rvert^2$, if

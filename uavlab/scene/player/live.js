@@ -256,7 +256,7 @@ function playLive(stage, planners, live, buffer) {
     const began = performance.now(), found = planners.curve(control, places.length, live.curve.step, live.curve.bank, clearance, ...walls, origin, cell, points, bends, facts);
     const took = performance.now() - began, [row] = live.offers, fact = facts.values;
     emptied(objects.routes);
-    if (found <= live.room) objects.routes.add(...tube(dashed(cornersOf(points.values.slice(0, 3 * found)), row.dashes, live.width), live.width / 2, row.color));
+    if (found <= live.room && state.shown.has(row.name)) objects.routes.add(...tube(dashed(cornersOf(points.values.slice(0, 3 * found)), row.dashes, live.width), live.width / 2, row.color));
     objects.routes.add(lines(places.slice(1).flatMap((place, n) => [...near(places[n]), ...near(place)]), "#222", 0.6), stalks());
     const words = at("offer-0").querySelector(".found");
     words.textContent = found > live.room ? "the curve is too long for the page" : [`${per(fact[COST], 1)} m`, fact[NEAREST] > 0 ? `clearance ${per(fact[NEAREST], 2)} m` : "it touches a building",
@@ -465,7 +465,7 @@ function playLive(stage, planners, live, buffer) {
   stage.withoutRoutes();
   at("live").classList.add("ready");
   at("legend").open = true;
-  at("legend").querySelector("summary").textContent = "Planners";
+  at("legend").querySelector("summary").textContent = live.curve ? "Curve" : "Planners";
   recall();
   showValues();
   plan();
