@@ -419,7 +419,8 @@ assert (round(shortest.length, 1), round(shortest.length - cutting, 1)) == (66.4
 
 # %%
 racers = ["A*", "A*, straight estimate", "Dijkstra"]
-scene.live(city, notch, middle, planners=racers, shown=racers[:2], settings={"keep": 0}, expansions=True)
+south = (-85, 50)  # from where we look: azimuth and height [degrees]
+scene.live(city, notch, middle, planners=racers, shown=racers[:2], settings={"keep": 0}, expansions=True, camera=south)
 
 # %% [markdown]
 # *As the page begins: equally long routes with both estimates.* Along the 26 directions both expand one voxel for each
@@ -429,8 +430,8 @@ scene.live(city, notch, middle, planners=racers, shown=racers[:2], settings={"ke
 # %% tags=["check"]
 for goal, counts in {(72.5, 18.5, 30.5): [18, 18, 16754], (60.5, 5.5, 30.5): [30, 1408, 67491]}.items():
     assert [astar(city, notch, goal, heuristic=h).info["expanded"] for h in names.values()] == counts
-south = itertools.product(range(32, 100, 8), range(1, 14, 4))  # nothing is in between
-for goal in [(x + 0.5, y + 0.5, 30.5) for x, y in south]:
+places = itertools.product(range(32, 100, 8), range(1, 14, 4))  # nothing is in between
+for goal in [(x + 0.5, y + 0.5, 30.5) for x, y in places]:
     octile_way, straight_way = (astar(city, notch, goal, heuristic=h) for h in ("octile", "euclidean"))
     sides = sorted(np.abs(np.subtract(goal, octile_way.points[0])))
     assert octile_way.info["expanded"] == sides[2] == len(octile_way.points) - 1
