@@ -31,7 +31,7 @@ from itertools import product
 import numpy as np
 from scipy import ndimage
 
-from uavlab import plot
+from uavlab import plot, scene
 from uavlab.city import City, table1_city
 from uavlab.planners import astar, potential_field, potential_forces, repulsion
 from uavlab.route import Route
@@ -39,7 +39,7 @@ from uavlab.statistics import share_interval
 
 # %% tags=["figure"]
 COLORS = {
-    "field, continuous": plot.ORANGE, "field, lattice": plot.PINK, "A*": plot.BLUE,
+    "field, continuous": plot.ORANGE, "field, lattice": plot.PINK, "potential field": plot.PINK, "A*": plot.BLUE,
     "stuck, continuous only": plot.YELLOW, "stuck, lattice only": plot.PINK, "stuck, both": plot.ORANGE,
     "arrives, both": plot.SKY, "pull": plot.GREEN, "push": plot.PINK, "pull and push together": plot.BLACK,
     "stopped": plot.BLACK, "weak field": plot.PINK, "medium field": plot.GREEN,
@@ -365,7 +365,7 @@ for close in (0.5, 0.4, 0.3, 0.2):
     print(f"{close} m from the wall: push of size {repulsion(close, push=0.5, reach=1.5):.0f}")
 
 # %% [markdown]
-# Only at 0.2 to 0.3 m, and a step is 0.5 m long. So the UAV hits the wall. (The message names the last point before.)
+# Only at 0.2 to 0.3 m, and a step is 0.5 m long. So the UAV hits the wall.
 #
 # ### Which starts are trapped?
 #
@@ -416,9 +416,36 @@ plot.area_map(city, areas | {"building": city.occupied[:, :, 30]},
 # the notch it slides into the corner.
 #
 # Near a wall's end the rule isn't sharp. East of the L-shaped building (pink) the foot lies on the wall, but half a
-# metre from its end at $y = 45$ m. There all voxels together also push towards the end, and continuous moves slip
-# around it. If only the nearest voxel pushes, they stop at the foot.
+# metre from its end, and continuous moves slip around it. (If only the nearest voxel pushes, they don't.)
 #
+# > **Play.** Out of the notch again. Move one end at a time (focus its ring; arrow keys and Page Up move it by 1 m): the
+# > start up, the start south, the goal up, the goal south. Which of them frees the field, and from which place on?
+
+# %%
+south = (-85, 50)  # from where we look: azimuth and height [degrees]
+scene.live(city, notch, middle, planners=["potential field", "A*"], settings={"keep": 0}, colors=COLORS, camera=south)
+
+# %% [markdown]
+# *As the page begins: the field (dotted) stays in the notch, A\* doesn't.* No start frees it, up to 98.5 m or south to 0.5
+# m. The goal does: past the wall's end at $y = 15$ m, from 13.5 m on, and above the wall's top at 66 m, from 66.5 m on.
+# There the foot of its perpendicular lies beside the wall. So it is the goal that makes the trap.
+
+# %% tags=["check"]
+
+
+def arrives(start=(90.5, 18.5, 30.5), goal=(50.5, 44.5, 30.5)):
+    """Whether the field of the scene does."""
+    return potential_field(city, start, goal).reached
+
+
+assert [arrives(goal=(50.5, y + 0.5, 30.5)) for y in range(45)] == [y <= 13 for y in range(45)]
+assert [arrives(goal=(50.5, 44.5, z + 0.5)) for z in range(30, 99)] == [z >= 66 for z in range(30, 99)]
+assert not any(arrives(start=(90.5, 18.5, z + 0.5)) for z in range(30, 99))
+assert not any(arrives(start=(90.5, y + 0.5, 30.5)) for y in range(19))
+assert city.occupied[69, 15:35].sum(axis=1).tolist() == [66] * 20
+assert not city.occupied[69, :15].any()
+
+# %% [markdown]
 # ## A potential without traps
 #
 # The proof needs a pull that depends only on the distance. Some others have a single local minimum, the goal. We
@@ -505,8 +532,7 @@ assert np.isfinite(C[free]).all()
 # (Such a tie would show below as a cell without a lower neighbour. There is none.)
 #
 # We want to go downhill, so we take $U = -\ln P$, which is low where $P$ is great. To solve Eq. 7 we begin with zeros
-# and replace each value by the mean of its four neighbours, 5000 times. This is *relaxation*. (From the 3000th time to
-# the 5000th, $P$ in the notch changes by only 0.1 %.)
+# and replace each value by the mean of its four neighbours, 5000 times. This is *relaxation*.
 
 
 # %%
@@ -533,7 +559,6 @@ mean = (padded[2:, 1:-1] + padded[:-2, 1:-1] + padded[1:-1, 2:] + padded[1:-1, :
 assert np.abs(P - mean)[inner].max() < 1e-8
 assert f"{P[home]:.2e}" == "1.54e-05"
 assert P[free].min() > 0
-assert 0.0005 < 1 - chance(free, target, 3000)[home] / P[home] < 0.0015
 
 # %% [markdown]
 # > **Predict first.** Which of the three potentials lead out of the notch: pull and push, cost-to-go, harmonic? Which
@@ -685,7 +710,7 @@ plot.intervals(series, "length of A* / length of the field's route", places={"Ta
 #   for it, one of the three intervals holds 0.952. So Table 2 doesn't tell which field was flown.
 # - **With continuous moves the measures differ.** The typical route of the weak field is shorter than A\*'s (median above
 #   1). But four of its routes are more than twice as long, so the ratio of means shows no difference. For the strong
-#   field the median shows none; both means are below 1. (A tenth of its ratios are below 0.62.)
+#   field the median shows none; both means are below 1.
 # - **Every setting fails often**, on 10 to 34 % of the pairs. No ratio contains these pairs.
 #
 # Why do they fail? We fly on from each stop. And we look for goals that walls push harder than the goal pulls: such a
@@ -724,8 +749,7 @@ print(f"no detour on {(~detour).sum()} pairs; the field arrives on {(~detour & o
 print(detour.sum(), (detour & ok).sum(), (~detour).sum(), (~detour & ok).sum(), ok.sum())
 
 # %% [markdown]
-# They are not: the field fails on 40 of 99 pairs with a detour, and on 8 of 201 without. (Without a detour one of many
-# shortest ways is free. The field may still head for a wall.)
+# They are not: the field fails on 40 of 99 pairs with a detour, and on 8 of 201 without.
 #
 # ## Is the field safer than A\*?
 #
@@ -803,43 +827,8 @@ print(
 # A shortest way around a building touches its corner. Without a detour A\* takes any of many equally short routes: on
 # 41 of 68 pairs it grazes a wall although another one keeps 3.5 m.
 #
-# If we *tell* A\* to keep 3.5 m, it arrives on all 300 pairs and flies 1.9 % more. None of our four fields arrives on
-# all pairs. But A\* needs the whole map, and a field only what is within $R$.
-#
-# ## Turn it yourself
-#
-# Find a setting with which the chapter's first flight fails, and one with which it keeps the largest distance and
-# still arrives. (None of the 36 settings gets the other one out of the notch.)
-
-
-# %%
-def draw(attraction, moves, push, reach):
-    setting = {"attraction": attraction, "moves": moves, "push": push, "reach": reach}
-    ends = {"across the city": (start, goal), "out of the notch": (notch, middle)}
-    routes = [potential_field(city, *pair, **setting) for pair in ends.values()]
-    near = [f"{route.clearance(city):.1f} m from walls" for route in routes]
-    names = [f"{name}, {distance}" for name, distance in zip(ends, near, strict=True)]
-    colors = dict(zip(names, (plot.GREEN, plot.ORANGE), strict=True))
-    return plot.plan(city, dict(zip(names, routes, strict=True)), colors=colors)
-
-
-labels = {"attraction": "pull", "moves": "moves", "push": "strength k_rep", "reach": "range R [m]"}
-begin = {"attraction": "conic", "moves": "continuous", "push": 5, "reach": 5}
-choices = {"attraction": ["conic", "quadratic"], "moves": ["continuous", "lattice"]}
-choices |= {"push": [5, 200, 5000], "reach": [3, 5, 8]}
-plot.sliders(draw, title="potential field", labels=labels, start=begin, progress=False, **choices)
-
-# %% tags=["check", "nbval-check-output"]
-first, second = [], []
-for values in product(*choices.values()):
-    setting = dict(zip(choices, values, strict=True))
-    first.append(potential_field(city, start, goal, **setting).reached)
-    second.append(potential_field(city, notch, middle, **setting).reached)
-print(len(first), sum(first), sum(second))
-assert not any(second)
-
-# %% [markdown]
-# *From above; a square marks where a flight has stopped.*
+# If we *tell* A\* to keep 3.5 m, it arrives on all 300 pairs and flies 1.9 % more. But
+# A\* needs the whole map, and a field only what is within $R$.
 #
 # ## Appendix: the equations as printed
 #

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import matplotlib.image
 import numpy as np
+from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from playwright.sync_api import sync_playwright
 
 sys.path.append(str(Path(__file__).parents[1]))  # where pytest looks, too
@@ -29,7 +30,7 @@ def used_scene(page, element):
     frame.wait_for_selector("body[data-ready]", timeout=SECONDS)
     if frame.evaluate("document.body.dataset.ready") != "yes":
         return [f"the scene isn't drawn: {frame.inner_text('#problem')}"]
-    problems = []
+    problems = answered(frame) if frame.query_selector("#live") else []
     moving = frame.evaluate("document.body.classList.contains('moving')")
     if moving and frame.evaluate("document.body.classList.contains('playing')"):
         frame.click("#play")
@@ -50,6 +51,24 @@ def used_scene(page, element):
         seen = now
     if not frame.get_attribute("#pane", "aria-label"):
         problems.append("the scene has no words for those who don't see it")
+    return problems
+
+
+def answered(frame):
+    """Move an end of a live scene by its arrow keys, there and back; both times it plans anew."""
+    frame.wait_for_selector("body[data-live]", timeout=SECONDS)
+    if frame.evaluate("document.body.dataset.live") != "yes":
+        return [f"the scene doesn't answer: {frame.inner_text('#lifeless')}"]
+    problems = []
+    for key in ("ArrowLeft", "ArrowRight"):
+        before = frame.evaluate("Number(document.body.dataset.planned)")
+        frame.locator(".handle").first.press(key)
+        try:
+            frame.wait_for_function(
+                "before => Number(document.body.dataset.planned) > before", arg=before, timeout=20_000
+            )
+        except PlaywrightTimeout:
+            problems.append(f"{key} moves an end and nothing is planned")
     return problems
 
 

@@ -24,7 +24,7 @@ from uavlab.risk import RiskMap
 from uavlab.route import Route
 from uavlab.scene.camera import Camera
 from uavlab.scene.content import draw_routes, signs, width_of
-from uavlab.scene.drawing import Drawing
+from uavlab.scene.drawing import Drawing, Entry
 from uavlab.scene.legend import words_of
 from uavlab.scene.live_offers import OFFERS, Settings, checked_offers, conditions_told, settings_of, sliders_told
 from uavlab.scene.live_panel import panel
@@ -259,7 +259,13 @@ def scene_of(
     """The scene, of a drawing of how it is at first, and of what its page is told."""
     camera = checked_view(drawing, camera)
     picture, words = png_of(picture_of(drawing, camera, 0.0, 1.0), DPI), words_of(drawing)
-    drawing.legend = [entry for entry in drawing.legend if entry.kind != "line"]
+    signs_here = [Entry("start", "start", "#000000"), Entry("goal", "goal", "#000000")]
+    if any(offer.get("kind") == "field" for offer in told["offers"]):
+        signs_here.append(Entry("stopped", "stopped", "#000000"))
+    if "flights" in told:
+        signs_here.append(Entry("crash", "crash", CRASH_COLOR))
+    others = ("line", "start", "goal", "stopped", "missed")
+    drawing.legend = signs_here + [entry for entry in drawing.legend if entry.kind not in others]
     told |= {
         "id": hashlib.sha256(compact([drawing.title, told["shape"], told["ends"], list(looks)])).hexdigest()[:8],
         "center": drawing.center.tolist(), "width": width_of(drawing), "room": ROOM, "crash": CRASH_COLOR,

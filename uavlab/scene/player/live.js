@@ -191,7 +191,7 @@ function playLive(stage, planners, live, buffer) {
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(ends, 3));
     return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color, transparent: true, opacity}));
   }
-  const crosses = [];  // where flights crashed
+  const crosses = [], stops = [];  // where flights crashed, and where a potential field got stuck
   function stalks() {  // from each end down to the ground below it
     const ends = [];
     for (const place of Object.values(state.ends)) {
@@ -207,7 +207,9 @@ function playLive(stage, planners, live, buffer) {
   function drawRoutes(answers) {
     emptied(objects.routes).add(stalks());
     emptied(objects.expanded);
-    for (const {offer, way, order} of answers) {
+    for (const stop of stops.splice(0)) stop.element.remove();
+    for (const {offer, way, order, reason} of answers) {
+      if (reason && way?.length) stops.push({place: near([...way.slice(-3)]), element: drawn("stopped", offer.color)});
       if (way?.length > 3) objects.routes.add(...tube(dashed(cornersOf(way), offer.dashes, live.width), live.width / 2, offer.color));
       if (order && at("expanded").checked) {
         const step = Math.ceil(order.length / 40000), places = [];
@@ -407,7 +409,7 @@ function playLive(stage, planners, live, buffer) {
       put(element, near(state.ends[end]), true);
       element.setAttribute("aria-label", `${end} at ${shown(state.ends[end])} m; arrow keys move it, Page Up and Page Down change its height`);
     }
-    for (const cross of crosses) put(cross.element, cross.place, true);
+    for (const {element, place} of [...crosses, ...stops]) put(element, place, true);
   });
 
   // --- the panel ---
