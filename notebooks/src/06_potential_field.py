@@ -423,7 +423,15 @@ plot.area_map(city, areas | {"building": city.occupied[:, :, 30]},
 
 # %%
 south = (-85, 50)  # from where we look: azimuth and height [degrees]
-scene.live(city, notch, middle, planners=["potential field", "A*"], settings={"keep": 0}, colors=COLORS, camera=south)
+scene.live(
+    city,
+    notch,
+    middle,
+    planners=["potential field", "A*"],
+    settings={"keep": 0},
+    colors=COLORS,
+    camera=south,
+)
 
 # %% [markdown]
 # *As the page begins: the field (dotted) stays in the notch, A\* doesn't.* No start frees it, up to 98.5 m or south to 0.5
