@@ -1,6 +1,7 @@
 """`python -m uavlab`, as a person calls it."""
 
 import base64
+import gzip
 import html
 import json
 import re
@@ -404,3 +405,53 @@ def test_the_profile_has_the_colours_of_the_scene(tmp_path):
     assert set(colors) == {"shortest", "least risk + B-spline"}
     assert {name: color.upper() for color, name in profile.items()} == colors
     assert len(set(colors.values())) == 2
+
+
+def told_of(page, name):
+    return json.loads(gzip.decompress(base64.b64decode(re.search(rf'[{{ ]{name}: "([^"]*)"', page)[1])))
+
+
+def test_live_writes_a_page_that_answers(tmp_path, capsys):
+    out = tmp_path / "live.html"
+    assert main(["--live", "--wind", "7", "--wind-from", "270", "--payload", "0.5", "--out", str(out)]) == 0
+    assert f"open {out}" in capsys.readouterr().out
+    page = out.read_text(encoding="utf-8")
+    assert len(page) < 600_000
+    told = told_of(page, "told")
+    assert [offer["name"] for offer in told["offers"]] == ["A*", "Theta*", "hazard A*", "potential field"]
+    settings = {slider["name"]: slider["value"] for slider in told["sliders"]}
+    assert settings["wind"] == 7.0
+    assert settings["towards"] == 90.0
+    assert settings["keep"] >= 3.5
+    assert told["flights"]["total"] == 200
+    assert "city, uav, wind" in told["flights"]["python"]  # with its load, it isn't the usual one
+
+
+def test_live_over_people_plans_by_risk(tmp_path):
+    out = tmp_path / "live.html"
+    assert main(["--live", "--city", "campus", "--flights", "0", "--out", str(out)]) == 0
+    told = told_of(out.read_text(encoding="utf-8"), "told")
+    assert [offer["name"] for offer in told["offers"]] == ["least risk", "shortest"]
+    assert "flights" not in told
+
+
+def test_live_of_a_file_with_its_terrain_and_zones(tmp_path):
+    square = [[4.36, 52.01], [4.3604, 52.01], [4.3604, 52.0102], [4.36, 52.0102], [4.36, 52.01]]
+    feature = {
+        "type": "Feature",
+        "properties": {"height": 12},
+        "geometry": {"type": "Polygon", "coordinates": [square]},
+    }
+    town = tmp_path / "town.geojson"
+    town.write_text(json.dumps({"type": "FeatureCollection", "features": [feature]}), encoding="utf-8")
+    out = tmp_path / "live.html"
+    assert main(["--live", "--city", str(town), "--cell", "2", "--out", str(out)]) == 0
+    assert told_of(out.read_text(encoding="utf-8"), "told")["cell"] == 2.0
+
+
+@pytest.mark.parametrize("option", [("--min-height", "5"), ("--max-height", "50"), ("--planner", "astar")])
+def test_live_refuses_what_it_has_not(tmp_path, capsys, option):
+    out = tmp_path / "live.html"
+    assert main(["--live", *option, "--out", str(out)]) == 2
+    assert f"{option[0]} is nothing that a page with --live has" in capsys.readouterr().err
+    assert not out.exists()

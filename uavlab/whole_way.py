@@ -275,10 +275,11 @@ def live_page(
         "gusts": premises.wind.deviation,
         "keep": min(premises.safe_distance, float(city.clearance[tuple(city.cell_of([start, goal]).T)].min())),
     }
-    if risk_map is not None:
-        del asked["keep"]
+    has = {"keep"} if risk_map is None else set()
+    has |= {"wind", "towards", "gusts"} if options.flights else set()
     settings = {}
-    for name, value in asked.items():
+    for name in sorted(has):
+        value = asked[name]
         slider = SLIDERS[name]
         settings[name] = float(np.clip(slider.step * np.floor(value / slider.step + 1e-9), slider.least, slider.most))
     names = ["A*", "Theta*", "hazard A*", "potential field"] if risk_map is None else ["least risk", "shortest"]
