@@ -17,7 +17,7 @@
 # |---|---|
 # | **You will be able to** | name the steps from a weather report to a flight; plan a route that keeps a distance; say what wind and GPS errors each do to a flight; find your way around the course |
 # | **You need** | school physics and a little Python; nothing of aviation |
-# | **Time** | 30 minutes to read, 20 seconds to run (the first time a minute: Python code is translated to machine code) |
+# | **Time** | 30 minutes to read, 30 seconds to run (the first time a minute: Python code is translated to machine code) |
 # | **Paper** | REPARE ([doi:10.3390/s22062151](https://doi.org/10.3390/s22062151)), RISK-ACO ([doi:10.19650/j.cnki.cjsi.J2007192](https://doi.org/10.19650/j.cnki.cjsi.J2007192); ACO: ant colony optimisation) and PSO-BAS ([doi:10.23919/JSEE.2022.000111](https://doi.org/10.23919/JSEE.2022.000111); particle swarm and beetle search): the course's names for three papers of 2021 and 2022 |
 #
 # ## How to work with this course

@@ -420,7 +420,16 @@ assert (round(shortest.length, 1), round(shortest.length - cutting, 1)) == (66.4
 # %%
 racers = ["A*", "A*, straight estimate", "Dijkstra"]
 south = (-85, 50)  # from where we look: azimuth and height [degrees]
-scene.live(city, notch, middle, planners=racers, shown=racers[:2], settings={"keep": 0}, expansions=True, camera=south)
+scene.live(
+    city,
+    notch,
+    middle,
+    planners=racers,
+    shown=racers[:2],
+    settings={"keep": 0},
+    expansions=True,
+    camera=south,
+)
 
 # %% [markdown]
 # *As the page begins: equally long routes with both estimates.* Along the 26 directions both expand one voxel for each
