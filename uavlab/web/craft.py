@@ -53,8 +53,8 @@ def craft_of(uav: UAV, wind: Wind, autopilot: Autopilot, time_step: float) -> np
     >>> from uavlab.flight import Autopilot
     >>> from uavlab.vehicle import LIGHT_QUADROTOR
     >>> from uavlab.weather import Wind
-    >>> from uavlab.web.craft import craft_of
-    >>>     >>> craft = craft_of(LIGHT_QUADROTOR, Wind((6, 0)), Autopilot(), 0.02)
+    >>> from uavlab.web.craft import CRAFT, craft_of
+    >>> craft = craft_of(LIGHT_QUADROTOR, Wind((6, 0)), Autopilot(), 0.02)
     >>> {name: round(float(craft[CRAFT.index(name)]), 2) for name in ("mass", "thrust", "climb")}
     {'mass': 1.5, 'thrust': 28.0, 'climb': 5.0}
     """
