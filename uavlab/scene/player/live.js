@@ -26,7 +26,7 @@ function playLive(stage, planners, live, buffer) {
   const walls = runsOf(occupied), zones = runsOf(kept("zones") === undefined ? planners.numbers("boolean", new Uint8Array(count), live.shape) : bits("zones"));
   const facts = planners.empty("float64", 10), points = planners.empty("float64", live.room, 3), price = planners.empty("float64", ...live.shape);
   const nobody = planners.empty("int32", 0), order = live.expansions ? planners.empty("int32", count) : nobody;
-  const [COST, EXPANDED, REACHED, RECORDED, OUTCOME, NEAREST, BEND, FASTEST] = [0, 1, 2, 3, 4, 6, 8, 9];  // as functions.py has them
+  const [COST, OUTCOME, NEAREST, BEND, FASTEST] = [0, 4, 6, 8, 9];  // as functions.py has them
   const risk = live.risk && {
     rate: planners.numbers("float64", floats("rate", count), live.shape),
     climb: planners.numbers("boolean", Uint8Array.from(live.risk.climb)),
@@ -84,11 +84,7 @@ function playLive(stage, planners, live, buffer) {
     risk: (offer, ends) => planners.least_risk(blockedAt(0), risk.prices[offer.price], risk.climb, risk.turn, ...ends, origin, cell, points, facts),
   };
   function straightened(found, least) {
-    if (found === 0) return 0;
-    const expanded = facts.values[EXPANDED];
-    const left = planners.straighten(points, found, price, least, live.slack, origin, cell, ...walls, ...zones, facts);
-    facts.values[EXPANDED] = expanded;
-    return left;
+    return found && planners.straighten(points, found, price, least, live.slack, origin, cell, ...walls, ...zones, facts);
   }
   const keptBy = offer => ({astar: value("keep"), theta: value("keep"), hazard: offer.radius, repare: conditions()?.distance})[offer.kind] ?? 0;
 
