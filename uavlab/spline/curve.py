@@ -255,7 +255,7 @@ class Curve:
         where = checks.numbers("parameter", parameter)
         derivative = checked_derivative(derivative)
         checks.within("parameter", where, 0.0, len(padded) - 3, "(segments)")
-        return points_at(padded, where.ravel(), derivative).reshape(*where.shape, -1)
+        return points_at(padded, where.ravel(), derivative).reshape(*where.shape, padded.shape[-1])
 
     @cached_property
     def points(self) -> np.ndarray:

@@ -26,9 +26,9 @@ TARGET = "wasm32-unknown-unknown"
 WASM, FACTS = (Path(__file__).with_name(name) for name in ("planners.wasm", "planners.json"))
 PLAIN = {
     "NUMBA_OPT": "0", "NUMBA_LOOP_VECTORIZE": "0", "NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "",
-    "NUMBA_DISABLE_JIT": "0",
+    "NUMBA_DISABLE_JIT": "0", "PYTHONHASHSEED": "0",
 }  # fmt: skip
-"""How numba has to be set up before it is imported, for IR that any machine can have."""
+"""How numba has to be set up before it is imported, for IR that any machine can have, and the same each time."""
 
 RUNTIME = """
 define void @NRT_incref(ptr %block) noinline {
