@@ -246,6 +246,16 @@ def test_expanded_voxels_of_a_race(opened, city, picture_of):
     assert expanded == sorted(expanded)
 
 
+def test_a_planner_that_records_nothing_draws_no_expanded_voxels(opened, city, picture_of):
+    page = opened(live(city, *ENDS, planners=["A*", "potential field"], expansions=True))
+    page.uncheck("#offer-0 input")  # the field is planned alone, after a search that was recorded
+    page.wait_for_timeout(500)
+    without = picture_of(page.locator("#pane"), "-without")
+    page.check("#expanded")
+    page.wait_for_timeout(500)
+    assert np.array_equal(picture_of(page.locator("#pane"), "-with"), without)
+
+
 def test_on_a_phone(opened, city, picture_of):
     page = opened(live(city, *ENDS, planners=["A*", "REPARE"], flights=20), width=390, height=844)
     picture_of(page)

@@ -16,7 +16,7 @@ from uavlab.city.bounds import slack_of
 from uavlab.planners.grid import HEURISTICS
 from uavlab.spline.curve import BANK
 from uavlab.web import functions
-from uavlab.web.functions import COST, ENERGY, EXPANDED, FACTS, NEAREST, OUTCOME, REACHED, RECORDED
+from uavlab.web.functions import ANSWERS, COST, ENERGY, EXPANDED, NEAREST, OUTCOME, REACHED, RECORDED
 
 KINDS = {"bool": "boolean", "int32": "int32", "int64": "int64", "uint64": "uint64", "float64": "float64"}
 
@@ -152,7 +152,7 @@ class Town:
         self.clearance, self.price = side.empty(float, city.shape), side.empty(float, city.shape)
         side.call("clear", self.occupied, city.cell, self.clearance)
         self.walls, self.zones = self.runs_of(self.occupied), self.runs_of(side.array(city.in_no_fly))
-        self.facts, self.points = side.empty(float, FACTS), side.empty(float, (most, 3))
+        self.facts, self.points = side.empty(float, len(ANSWERS)), side.empty(float, (most, 3))
         self.order = side.empty(np.int32, city.occupied.size)
         self.nothing = side.empty(np.int32, 0)
         self.closed_at = {}

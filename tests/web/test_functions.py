@@ -31,6 +31,7 @@ from uavlab.resilience import ADVANCED, ConditionCheck, Monitor
 from uavlab.risk import CAMPUS_FLIGHT, random_campus
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import Wind
+from uavlab.web import functions
 from uavlab.web.craft import CRAFT, craft_of
 
 ENDS = (5.0, 5.0, 30.0), (95.0, 95.0, 30.0)
@@ -138,3 +139,7 @@ def test_craft_refuses_what_a_page_can_t_fly(changed, message):
         craft_of(
             **({"uav": LIGHT_QUADROTOR, "wind": Wind((3, 0)), "autopilot": Autopilot(), "time_step": 0.02} | changed)
         )
+
+
+def test_names_of_answers_are_those_of_their_places():
+    assert [getattr(functions, name.upper()) for name in functions.ANSWERS] == list(range(len(functions.ANSWERS)))

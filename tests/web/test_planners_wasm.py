@@ -408,7 +408,7 @@ def test_wrong_calls_are_told(side, call, message):
         flags: planners.empty("boolean", 2, 2, 2), point: planners.empty("float64", 3),
         way: planners.empty("float64", 4, 3), field: planners.empty("float64", 2, 2, 2),
         longs: planners.empty("int64", 5), ints: planners.empty("int32", 0),
-        few: planners.empty("boolean", 0), facts: planners.empty("float64", 10),
+        few: planners.empty("boolean", 0), facts: planners.empty("float64", planners.answers.length),
     })""")
     with pytest.raises(Exception, match=message):
         side.page.evaluate(f"() => {{ {call}; }}")

@@ -65,11 +65,12 @@ def city_told(city: City, closed: np.ndarray, kept: Bytes) -> dict[str, Any]:
 def risk_told(risk: RiskMap, kept: Bytes) -> tuple[dict[str, Any], np.ndarray]:
     """A risk map for the page, and where its limits of turns, climbs and heights don't let a route be."""
     limits = checked_limits(risk, MAX_TURN, MAX_PITCH, 0.0, None, np.inf)
-    prices = {"least": Weights(), "length": Weights(risk=0.0, length=1.0)}
-    for name, weights in prices.items():
-        kept.add(name, price_per_cell(risk, weights))
+    weights = {"least": Weights(), "length": Weights(risk=0.0, length=1.0)}
+    prices = {name: price_per_cell(risk, weight) for name, weight in weights.items()}
+    for name, values in prices.items():
+        kept.add(name, values)
     kept.add("rate", risk.rate)
-    query = query_of(risk, price_per_cell(risk, Weights()), 0, 0, limits)
+    query = query_of(risk, prices["least"], 0, 0, limits)
     told = {
         "prices": list(prices), "climb": query.climb.astype(int).tolist(), "turn": query.turn.astype(int).tolist(),
         "scale": 1 / (3600 * risk.uav.cruise_speed),

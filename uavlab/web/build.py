@@ -116,6 +116,8 @@ def build(wasm: Path = WASM, facts: Path = FACTS) -> None:
     import llvmlite
     import numba
 
+    from uavlab.web.functions import ANSWERS
+
     if shutil.which("wasm-ld") is None:
         raise RuntimeError("wasm-ld isn't there: it links the module; on Debian it comes with the package lld")
     chosen = functions()
@@ -134,7 +136,8 @@ def build(wasm: Path = WASM, facts: Path = FACTS) -> None:
         takes = [[argument, *kind_of(hint)] for argument, hint in arguments_of(function).items()]
         signatures[name] = {"takes": takes, "gives": kind_of(result_of(function))[0]}
     digest = hashlib.sha256(wasm.read_bytes()).hexdigest()
-    facts.write_text(json.dumps({"made_by": made_by, "digest": digest, "functions": signatures}) + "\n")
+    told = {"made_by": made_by, "digest": digest, "answers": ANSWERS, "functions": signatures}
+    facts.write_text(json.dumps(told) + "\n")
 
 
 def machine_code(chosen: Mapping[str, Any]) -> bytes:

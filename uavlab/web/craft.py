@@ -1,4 +1,4 @@
-"""A vehicle and its autopilot as the numbers that a flight in `planners.wasm` takes."""
+"""What a flight in `planners.wasm` takes: a vehicle and its autopilot as numbers, and a generator's state."""
 
 from __future__ import annotations
 

@@ -50,12 +50,10 @@ Longs1 = Annotated[np.ndarray, "int64", 1]
 Words1 = Annotated[np.ndarray, "uint64", 1]
 
 COST, EXPANDED, REACHED, RECORDED, OUTCOME, STEPS, NEAREST, ENERGY, BEND, FASTEST = range(10)
+ANSWERS = ("cost", "expanded", "reached", "recorded", "outcome", "steps", "nearest", "energy", "bend", "fastest")
 """Where answers stand in `facts`: a route's cost, expanded nodes, voxels within reach where there is no way, nodes that
 are recorded, how a walk or a flight ended, its logged steps, least distance to obstacles [m], energy used [J], and
 of a curve the greatest curvature on the plan [1/m] and the speed [m/s] at which a bank angle holds it."""
-
-FACTS = FASTEST + 1
-"""How many there are."""
 
 
 @compiled

@@ -56,7 +56,7 @@ async function loadPlanners(code, facts) {
   }
   const answer = new Numbers("float64", 2);
   const numbers = (kind, values, shape = [values.length]) => new Numbers(kind, ...shape).set(values);
-  const planners = {numbers, empty: (kind, ...shape) => new Numbers(kind, ...shape), used: () => top};
+  const planners = {numbers, empty: (kind, ...shape) => new Numbers(kind, ...shape), used: () => top, answers: facts.answers};
   for (const [name, {takes, gives}] of Object.entries(facts.functions))
     planners[name] = (...passed) => {
       const flat = takes.flatMap(([argument, kind, axes], n) => {

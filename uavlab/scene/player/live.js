@@ -2,7 +2,7 @@
 "use strict";
 
 function playLive(stage, planners, live, buffer) {
-  const {THREE, viewer, camera, controls, world, pane, overlay, drawn, put} = stage;
+  const {THREE, viewer, camera, controls, world, pane, drawn, put} = stage;
   const at = id => document.getElementById(id);
   const [nx, ny, nz] = live.shape, count = nx * ny * nz, cell = live.cell;
 
@@ -24,9 +24,9 @@ function playLive(stage, planners, live, buffer) {
     return runs;
   }
   const walls = runsOf(occupied), zones = runsOf(kept("zones") === undefined ? planners.numbers("boolean", new Uint8Array(count), live.shape) : bits("zones"));
-  const facts = planners.empty("float64", 10), points = planners.empty("float64", live.room, 3), price = planners.empty("float64", ...live.shape);
+  const facts = planners.empty("float64", planners.answers.length), points = planners.empty("float64", live.room, 3), price = planners.empty("float64", ...live.shape);
   const nobody = planners.empty("int32", 0), order = live.expansions ? planners.empty("int32", count) : nobody;
-  const [COST, OUTCOME, NEAREST, BEND, FASTEST] = [0, 4, 6, 8, 9];  // as functions.py has them
+  const fact = name => facts.values[planners.answers.indexOf(name)];
   const risk = live.risk && {
     rate: planners.numbers("float64", floats("rate", count), live.shape),
     climb: planners.numbers("boolean", Uint8Array.from(live.risk.climb)),
@@ -103,15 +103,16 @@ function playLive(stage, planners, live, buffer) {
     const problem = problemOf("start", keptBy(offer)) ?? problemOf("goal", keptBy(offer));
     if (problem) return {offer, reason: problem.words, problem};
     if (ends[0] === ends[1]) return {offer, reason: "start and goal lie in the same voxel"};
+    facts.values.fill(0);  // not every planner writes each of them
     const began = performance.now(), found = SOLVERS[offer.kind](offer, ends, places), took = performance.now() - began;
     if (found > live.room) return {offer, reason: `the route has ${found} points, the page has room for ${live.room}`};
-    const [cost, expanded, reached, recorded, outcome] = facts.values;
-    const answer = {offer, took, expanded, cost: cost, way: points.values.slice(0, 3 * found), points: found};
-    if (found === 0) return {...answer, reason: said(live.words[offer.kind === "risk" ? "no_risk" : "no_way"], {start: shown(places[0]), goal: shown(places[1]), reach: offer.kind === "theta" ? expanded : reached})};
+    const [expanded, recorded, outcome] = ["expanded", "recorded", "outcome"].map(fact);
+    const answer = {offer, took, expanded, way: points.values.slice(0, 3 * found), points: found};
+    if (found === 0) return {...answer, reason: said(live.words[offer.kind === "risk" ? "no_risk" : "no_way"], {start: shown(places[0]), goal: shown(places[1]), reach: offer.kind === "theta" ? expanded : fact("reached")})};
     answer.length = planners.measure(points, found, clearance, ...walls, origin, cell, facts);
-    answer.clearance = facts.values[NEAREST];
+    answer.clearance = fact("nearest");
     if (risk) answer.risk = planners.integral(points, found, risk.rate, origin, cell);
-    if (recorded && order !== nobody) answer.order = order.values.slice(0, recorded);
+    if (recorded) answer.order = order.values.slice(0, recorded);
     if (offer.kind === "field" && outcome !== 0) {
       const last = [...answer.way.slice(-3)], left = Math.hypot(...last.map((x, a) => x - places[1][a]));
       answer.reason = said(live.words.field[outcome], {place: shown(last), left: left.toFixed(1), steps: live.room - 1});
@@ -252,14 +253,14 @@ function playLive(stage, planners, live, buffer) {
     const places = Object.values(state.ends);
     control.set(places.flat());
     const began = performance.now(), found = planners.curve(control, places.length, live.curve.step, live.curve.bank, clearance, ...walls, origin, cell, points, bends, facts);
-    const took = performance.now() - began, [row] = live.offers, fact = facts.values;
+    const took = performance.now() - began, [row] = live.offers, [length, nearest, tightest, fastest] = ["cost", "nearest", "bend", "fastest"].map(fact);
     emptied(objects.routes);
     if (found <= live.room && state.shown.has(row.name)) objects.routes.add(...tube(dashed(cornersOf(points.values.slice(0, 3 * found)), row.dashes, live.width), live.width / 2, row.color));
     objects.routes.add(lines(places.slice(1).flatMap((place, n) => [...near(places[n]), ...near(place)]), "#222", 0.6), stalks());
     const words = at("offer-0").querySelector(".found");
-    words.textContent = found > live.room ? "the curve is too long for the page" : [`${per(fact[COST], 1)} m`, fact[NEAREST] > 0 ? `clearance ${per(fact[NEAREST], 2)} m` : "it touches a building",
-      fact[BEND] > 1e-9 ? `tightest bend ${per(1 / fact[BEND], 1)} m of radius: ${per(fact[FASTEST], 1)} m/s at a bank of ${live.curve.degrees}°` : "straight", `${per(took, 1)} ms`].join(" · ");
-    words.dataset.length = String(fact[COST]);
+    words.textContent = found > live.room ? "the curve is too long for the page" : [`${per(length, 1)} m`, nearest > 0 ? `clearance ${per(nearest, 2)} m` : "it touches a building",
+      tightest > 1e-9 ? `tightest bend ${per(1 / tightest, 1)} m of radius: ${per(fastest, 1)} m/s at a bank of ${live.curve.degrees}°` : "straight", `${per(took, 1)} ms`].join(" · ");
+    words.dataset.length = String(length);
     at("python").textContent = `from uavlab.spline import Curve\n\ncurve = Curve([\n${places.map(place => `    ${python(place)},`).join("\n")}\n], step=${live.curve.step})\nprint(curve.length, curve.clearance(city), curve.level_curvature.max())`;
     remember();
     viewer.set_dirty();
@@ -319,7 +320,7 @@ function playLive(stage, planners, live, buffer) {
         }
         flightState.set(words.subarray(4 * number, 4 * number + 4));
         const rows = Math.min(planners.fly(way, answer.points, speed, wind, value("gusts"), live.flights.memory, numbersOf, step, every, touching, nearGoal,
-          occupied, clearance, ...walls, origin, cell, flightState, log, facts), 4000), outcome = facts.values[OUTCOME], seen = log.values;
+          occupied, clearance, ...walls, origin, cell, flightState, log, facts), 4000), outcome = fact("outcome"), seen = log.values;
         crashed += outcome === 2;
         gaveUp += outcome === 3 || outcome === 4 || outcome === 0;
         if (outcome === 2) crosses.push({place: near([1, 2, 3].map(a => seen[12 * (rows - 1) + a])), element: drawn("crash", live.crash)});
