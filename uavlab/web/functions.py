@@ -120,7 +120,9 @@ def price_repare(
     """`repare_price` without a mean offset, for a wind from any side."""
     out, known = price.ravel(), clearance.ravel()
     for n in range(len(out)):
-        omega = penalty * forces_at(min(known[n], safe_distance), safe_distance, cell, blown, loaded)
+        omega = 0.0  # where no wall is near, as for most
+        if known[n] < safe_distance:
+            omega = penalty * forces_at(known[n], safe_distance, cell, blown, loaded)
         out[n] = price_in_zone(known[n], safe_distance, omega, cell)
     return 0
 
