@@ -6,7 +6,7 @@ import pytest
 from uavlab.city import City, table1_city
 from uavlab.flight import monte_carlo
 from uavlab.planners import astar, least_risk
-from uavlab.risk import CAMPUS_FLIGHT, reference_campus
+from uavlab.risk import CAMPUS_FLIGHT, RiskMap, reference_campus
 from uavlab.scene import live, live_curve
 from uavlab.spline import Curve
 from uavlab.statistics import share_interval
@@ -131,12 +131,21 @@ def test_a_link_brings_the_state_back(opened, city):
     assert lengths(other)["A*"] == astar(city, *ENDS, min_clearance=2.0).length  # a link of another scene
 
 
-def test_height_and_keys(opened, city):
-    page = opened(live(city, *ENDS))
-    drag(page, 1, (0, -60), "height")
+@pytest.mark.parametrize("camera", ["overview", "above", (-85, 20), (-85, 50)])
+def test_height_by_a_handle(opened, city, camera):
+    page = opened(live(city, *ENDS, camera=camera))
+    drag(page, 1, (0, -40), "height")
     routes = as_python(page, city=city)["routes"]
-    assert routes["A*"].points[-1, 2] > ENDS[1][2] + 3
+    higher = routes["A*"].points[-1]
+    assert higher[:2].tolist() == list(ENDS[1][:2])
+    assert ENDS[1][2] + 3 < higher[2] < ENDS[1][2] + 25
     assert routes["A*"].length == lengths(page)["A*"]
+    drag(page, 1, (0, 40), "height")
+    assert abs(as_python(page, city=city)["routes"]["A*"].points[-1, 2] - ENDS[1][2]) <= 1
+
+
+def test_keys(opened, city):
+    page = opened(live(city, *ENDS))
     page.focus(".handle >> nth=0")
     for key in ("ArrowRight", "ArrowUp", "PageUp", "PageUp"):
         page.keyboard.press(key)
@@ -188,11 +197,30 @@ def test_flights_are_those_of_monte_carlo(opened, city):
     for number, count in enumerate(crashed):
         low, high = share_interval(count, 60)
         assert f"[{1000 * low:.0f}, {1000 * high:.0f}]" in page.inner_text(f"#offer-{number} .flown")
+    assert page.locator("#overlay [data-kind=crash]").count() == sum(crashed)
+    page.focus(".handle >> nth=0")
+    page.keyboard.press("ArrowRight")
+    page.wait_for_timeout(300)
+    assert page.inner_text("#offer-0 .flown") == ""  # they flew another route
+    assert page.locator("#overlay [data-kind=crash]").count() == 0
     page.fill("#set-wind", "14")
     page.fill("#set-gusts", "4")
     page.click("#fly")
     page.wait_for_function("document.body.dataset.flown == 2")
     assert "stays on the ground" in page.inner_text("#offer-0 .flown")
+
+
+def test_flights_without_memory_say_so(opened, city):
+    page = opened(live(city, *ENDS, planners=["A*"], flights=20))
+    page.evaluate("window.grow = WebAssembly.Memory.prototype.grow, null")
+    page.evaluate("WebAssembly.Memory.prototype.grow = () => { throw new RangeError() }, null")
+    page.click("#fly")
+    page.wait_for_selector("body[data-flown]", timeout=SECONDS)
+    assert "no more memory" in page.inner_text("#offer-0 .flown")
+    page.evaluate("WebAssembly.Memory.prototype.grow = window.grow, null")
+    page.click("#fly")
+    page.wait_for_function("document.body.dataset.flown == 2")
+    assert "0 of 20 crash" in page.inner_text("#offer-0 .flown")
 
 
 def test_risk_below_the_ends_and_along_the_routes(opened):
@@ -208,6 +236,29 @@ def test_risk_below_the_ends_and_along_the_routes(opened):
     assert page.inner_text("#below").count("deaths an hour") == 2
     drag(page, 1, (-40, 20))
     assert lengths(page)["least risk"] != found["least risk"]
+
+
+def test_a_flight_over_people_takes_off_and_lands_where_it_is_too_low(opened):
+    occupied = np.zeros((20, 20, 10), bool)
+    occupied[14, 14, 2] = True  # a roof over the goal's ground
+    occupied[8:12, 8:12, :8] = True
+    campus = RiskMap(City(occupied, cell=5.0), population_density=0.01, shelter=0.2, min_height=15.0)
+    page = opened(
+        live(campus.city, (12.5, 12.5, 2.5), (82.5, 82.5, 7.5), risk=campus, planners=["least risk", "shortest"])
+    )
+    routes = as_python(page, city=campus.city, risk=campus)["routes"]
+    assert [route.takeoff for route in routes.values()] == [3, 3]
+    assert [route.landing for route in routes.values()] == [2, 2]
+    assert {name: route.length for name, route in routes.items()} == lengths(page)
+    assert f"{campus.fatalities(routes['least risk']):.1e}".split("e")[0] + "·10⁻" in said(page)
+    page.focus(".handle >> nth=1")
+    for steps in (2, 12):  # below the roof; then above the start, to end below where a route may begin
+        for key in ["ArrowLeft"] * steps + ["ArrowDown"] * steps:
+            page.keyboard.press(key)
+        page.wait_for_timeout(300)
+        with pytest.raises(ValueError, match="min_height") as refusal:
+            as_python(page, city=campus.city, risk=campus)
+        assert said(page).lower() in str(refusal.value)
 
 
 def test_control_points_are_dragged(opened, city):

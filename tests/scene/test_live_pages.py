@@ -7,12 +7,15 @@ import pytest
 from decoding import unpacked
 
 from uavlab.city import City, NoFlyZone, table1_city
+from uavlab.flight import Autopilot
+from uavlab.flight.simulation import setup_of
 from uavlab.planners import astar
 from uavlab.risk import CAMPUS_FLIGHT, reference_campus
 from uavlab.scene import live, live_curve
 from uavlab.scene.live_offers import CONDITIONS, OFFERS, SLIDERS, conditions_told, settings_of
 from uavlab.scene.live_parts import MOST_VOXELS
 from uavlab.vehicle import LIGHT_QUADROTOR
+from uavlab.weather import Wind
 from uavlab.web import module
 
 ENDS = (90.5, 18.5, 30.5), (50.5, 44.5, 30.5)
@@ -61,6 +64,13 @@ def test_the_city_is_told_to_the_bit(city):
         begin = told["arrays"][name]
         bits = np.unpackbits(np.frombuffer(kept, np.uint8, -(-flags.size // 8), begin))[: flags.size]
         assert np.array_equal(bits.reshape(flags.shape), flags)
+
+
+def test_flights_touch_at_the_distance_of_pythons(city):
+    told = json.loads(unpacked(live(city, *ENDS, flights=5).page, "told"))["flights"]
+    route, calm = astar(city, *ENDS), Wind((0.0, 0.0), deviation=0.0)
+    setup, _ = setup_of(route, city, LIGHT_QUADROTOR, calm, Autopilot(), told["step"])
+    assert (told["touching"], told["near"]) == (setup.obstacles.touching, setup.obstacles.near_goal)
 
 
 def test_each_of_repares_conditions_flies():

@@ -36,7 +36,7 @@ from uavlab.flight.state import (
 from uavlab.resilience import ADVANCED, BASIC, Controller
 from uavlab.route import Route, as_route
 from uavlab.spline import Curve
-from uavlab.spline.curve import CONTACT
+from uavlab.spline.curve import contact_distance
 from uavlab.sweep import sweep
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import Weather, Wind
@@ -300,7 +300,7 @@ def setup_of(
         grounded = why_grounded(flown_by(uav, first_controller(autopilot)), first, altitude)
         if grounded and autopilot.heeds_limits:
             return None, "; ".join(grounded)
-    touching = (1 - CONTACT) * uav.diameter / 2
+    touching = contact_distance(uav.diameter)
     near_goal = autopilot.acceptance_radius if isinstance(first, Wind) else np.inf
     obstacles = Obstacles(city.occupied, city.runs, city.clearance, city.origin, city.cell, touching, near_goal)
     return Setup(way, speed, obstacles, uav, disturbance, autopilot, float(time_step), altitude), ""

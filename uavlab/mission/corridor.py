@@ -14,7 +14,7 @@ import numpy as np
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.bounds import Bounds, keeps
-from uavlab.spline.curve import CONTACT
+from uavlab.spline.curve import contact_distance
 
 STOP = 1.0
 """How long it stops where it can't round the corner [s]."""
@@ -235,7 +235,7 @@ def check_column(city: City, name: str, point: np.ndarray, diameter: float) -> f
     low = np.array([*point[:2], touchable(city, point, diameter)])
     if low[2] < point[2]:
         apart = float(city.segment_distance(low, point))
-        if apart < (1 - CONTACT) * diameter / 2:
+        if apart < contact_distance(diameter):
             raise ValueError(
                 f"{name} at {checks.show(point)}: between it and what lies below, {point[2] - surface:.1f} m deeper, a "
                 f"wall is {apart:.2f} m away, and a UAV of {diameter:g} m needs {diameter / 2:g} m: begin and end a "

@@ -34,7 +34,7 @@ from uavlab.mission.items import (
     Item,
 )
 from uavlab.route import Route, Way, as_route
-from uavlab.spline.curve import CONTACT
+from uavlab.spline.curve import contact_distance
 from uavlab.vehicle import UAV
 
 FARTHEST_HOME = 1000.0
@@ -264,7 +264,7 @@ def check_return(legs: Corridor, site: Site, points: np.ndarray, return_height: 
     top = max(goal[2], site.at[2] + return_height)
     way = np.array([goal, [*goal[:2], top], [*start[:2], top], start])
     cure = "end='land' or 'stay'"
-    body = (1 - CONTACT) * uav.diameter / 2
+    body = contact_distance(uav.diameter)
     for where, high, keep in ((goal, way[1], legs.bounds.keep * city.cell), (start, way[2], body)):
         apart = float(city.segment_distance(where, high))
         if apart < keep:

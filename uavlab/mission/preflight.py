@@ -36,14 +36,14 @@ from uavlab.mission.way import (
     tried_out,
     way_of,
 )
-from uavlab.spline.curve import CONTACT
+from uavlab.spline.curve import contact_distance
 from uavlab.spline.limits import OUTSIDE
 from uavlab.statistics import share_interval
 from uavlab.vehicle import UAV, WATT_HOUR
 from uavlab.weather import Weather, Wind, lift_margin, rain_force, wind_limit
 from uavlab.weather.envelope import CREEP, steady_air_speed
 from uavlab.weather.forces import SAFETY_FACTOR
-from uavlab.weather.wind import gust_deviations, why_grounded, wind_of
+from uavlab.weather.wind import gust_deviations, strongest_gust, why_grounded, wind_of
 
 SIGMAS = 3.0
 """Of GPS, that a way keeps to its fence."""
@@ -341,14 +341,14 @@ def check_home(way: MissionWay, uav: UAV) -> Check:
     elif abs(off) > max(uav.diameter, way.city.cell):
         side = "above" if off > 0 else "below"
         room, words = -np.inf, f"home is {abs(off):.1f} m {side} what it would stand on, and with it all altitudes"
-    return Check("home", room, (1 - CONTACT) * uav.diameter / 2, "m", True, words)
+    return Check("home", room, contact_distance(uav.diameter), "m", True, words)
 
 
 def check_landing(way: MissionWay, uav: UAV) -> list[Check]:
     """Whether it can sink to where it lands; nothing of a mission that stays in the air."""
     room, beside = room_in_column(way.city, way.end, uav.diameter)
     words = f"{beside} on the way down from {checks.show(way.end)}"
-    return [Check("landing", room, (1 - CONTACT) * uav.diameter / 2, "m", True, words)] * way.lands
+    return [Check("landing", room, contact_distance(uav.diameter), "m", True, words)] * way.lands
 
 
 def check_map(way: MissionWay) -> Check:
@@ -483,7 +483,7 @@ def check_ground_speed(way: MissionWay, uav: UAV, wind: Wind) -> Check:
 def check_wind(uav: UAV, wind: Wind, altitude: float) -> list[Check]:
     """Lift, mean wind and gusts, as `grounded_by` asks for them."""
     rain = float(rain_force(wind.rain_mm_per_h, uav.rain_area))
-    gust = wind.speed + 3 * float(gust_deviations(wind, altitude)[0])
+    gust = strongest_gust(wind.speed, float(gust_deviations(wind, altitude)[0]))
     reach = steady_air_speed(uav, rain, wind.air_density)
     held = float(wind_limit(uav, rain, air_density=wind.air_density))
     return [

@@ -125,18 +125,28 @@ def end_at(airspace: Airspace, blocked: np.ndarray, point: npt.ArrayLike, argume
         point that would do.
     """
     city, position = airspace.city, checked_position(airspace.city, point, argument)
-    i, j, k = city.cell_of(position)
+    code = int(city.code_of(city.cell_of(position)))
     wrong = what_blocks(airspace, blocked, position)
     if not wrong:
-        return int(city.code_of((i, j, k))), ()
+        return code, ()
     if wrong == TOO_LOW:
-        closed, column = city.blocked()[i, j], blocked[i, j]
-        top = k + int(np.argmin(np.append(column[k:], False)))
-        if not closed[k:top].any() and top < city.shape[2]:
-            codes = city.code_of([(i, j, level) for level in range(k, top + 1)]).tolist()
-            return codes[-1], tuple(codes[:-1])
+        top = int(first_above(blocked, city.blocked(), code))
+        if top >= 0:
+            return top, tuple(range(code, top))
         wrong = f"{TOO_LOW}={airspace.min_height:g} m, and there is no free way straight up from it"
     raise ValueError(f"{argument} {checks.show(position)} {wrong}; {nearest_allowed(city, position, ~blocked)}")
+
+
+@compiled
+def first_above(blocked, barred, code):
+    """The code of the first voxel straight up where a route may be, −1 if what is barred, or nothing, is above."""
+    flags, bars, nz = blocked.ravel(), barred.ravel(), blocked.shape[2]
+    for above in range(code, code // nz * nz + nz):
+        if not flags[above]:
+            return above
+        if bars[above]:
+            return -1
+    return -1
 
 
 TOO_LOW = "lies below min_height"

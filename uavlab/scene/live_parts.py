@@ -12,7 +12,7 @@ from uavlab.flight import Autopilot
 from uavlab.flight.simulation import TIME_STEP
 from uavlab.planners.risk_question import MAX_TURN, Weights, checked_limits, price_per_cell, query_of
 from uavlab.risk import RiskMap
-from uavlab.spline.curve import CONTACT
+from uavlab.spline.curve import contact_distance
 from uavlab.spline.limits import MAX_PITCH
 from uavlab.statistics import share_interval
 from uavlab.vehicle import LIGHT_QUADROTOR, UAV
@@ -70,10 +70,11 @@ def risk_told(risk: RiskMap, kept: Bytes) -> tuple[dict[str, Any], np.ndarray]:
     for name, values in prices.items():
         kept.add(name, values)
     kept.add("rate", risk.rate)
+    kept.add("low", risk.city.out_of_heights(risk.min_height, np.inf))
     query = query_of(risk, prices["least"], 0, 0, limits)
     told = {
         "prices": list(prices), "climb": query.climb.astype(int).tolist(), "turn": query.turn.astype(int).tolist(),
-        "scale": 1 / (3600 * risk.uav.cruise_speed),
+        "lowest": risk.min_height, "scale": 1 / (3600 * risk.uav.cruise_speed),
     }  # fmt: skip
     return told, query.blocked
 
@@ -87,7 +88,7 @@ def flights_told(count: int, uav: UAV, kept: Bytes) -> dict[str, Any]:
     rain = float(rain_force(0.0, uav.rain_area))
     return {
         "total": count, "craft": craft_of(uav, calm, autopilot, TIME_STEP).tolist(), "speed": uav.cruise_speed,
-        "touching": (1 - CONTACT) * uav.diameter / 2, "near": autopilot.acceptance_radius, "step": TIME_STEP,
+        "touching": contact_distance(uav.diameter), "near": autopilot.acceptance_radius, "step": TIME_STEP,
         "every": round(LOG_EVERY / TIME_STEP), "memory": calm.correlation,
         "gust": float(wind_limit(uav, rain, air_density=calm.air_density)),
         "head": steady_air_speed(uav, rain, calm.air_density) - CREEP,

@@ -33,6 +33,11 @@ CONTACT = 0.02
 """Share of its radius by which a body may overlap an obstacle before that is contact; half of it for the route."""
 
 
+def contact_distance(diameter):
+    """How far [m] the middle of a body is from what it touches."""
+    return (1 - CONTACT) * diameter / 2
+
+
 def curvature(velocity: npt.ArrayLike, acceleration: npt.ArrayLike) -> np.ndarray:
     """Curvature κ = |r′ × r″|/|r′|³ of a curve r(t): one over the radius of the circle that fits best there.
 

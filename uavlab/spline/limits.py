@@ -17,7 +17,7 @@ from uavlab.city import City
 from uavlab.city.bounds import slack_of
 from uavlab.city.extent import checked_heights
 from uavlab.route import promises_of
-from uavlab.spline.curve import BANK, CONTACT, Curve, checked_bank, curvature
+from uavlab.spline.curve import BANK, Curve, checked_bank, contact_distance, curvature
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import wind_drag
 
@@ -256,7 +256,7 @@ def feasibility(
     checks.one_of("reading", reading, ("plan", "space"))
     whole, curve = curve, curve.en_route
     heights = heights_kept(curve, min_height, max_height, safe_height)
-    least = max((1 - CONTACT) * uav.diameter / 2, curve.min_clearance - slack_of(city) * city.cell)
+    least = max(contact_distance(uav.diameter), curve.min_clearance - slack_of(city) * city.cell)
     least = checks.not_negative_number("min_clearance", least if min_clearance is None else min_clearance)
     begins = float(whole.distance[np.searchsorted(whole.parameter, whole.takeoff)])
     if checks.flag("as_printed", as_printed) and max_turn is None:

@@ -10,7 +10,7 @@ from uavlab import checks
 from uavlab.city import City
 from uavlab.city.bounds import Bounds, bounds_of, legs_keep
 from uavlab.route import Route, promises_of
-from uavlab.spline.curve import CONTACT, Curve
+from uavlab.spline.curve import CONTACT, Curve, contact_distance
 from uavlab.vehicle import UAV
 
 MIDPOINT_ROUNDS = 6
@@ -89,7 +89,7 @@ def smooth(
     )
     bounds = bounds_of(city, **promises)
     refuse_route(route, city, uav, bounds)
-    bounds = bounds._replace(keep=max(bounds.keep, (1 - CONTACT) * uav.diameter / 2 / city.cell))
+    bounds = bounds._replace(keep=max(bounds.keep, contact_distance(uav.diameter) / city.cell))
     before, after = route.points[: route.takeoff], route.points[len(route.points) - route.landing :]
     way = route.en_route.points
     control = np.concatenate([way[:1]] * 2 * bool(route.takeoff) + [way] + [way[-1:]] * 2 * bool(route.landing))

@@ -31,7 +31,7 @@ from uavlab.flight.state import (
 )
 from uavlab.mission.corridor import floor_below, touchable
 from uavlab.route import Route
-from uavlab.spline.curve import CONTACT
+from uavlab.spline.curve import contact_distance
 from uavlab.vehicle import UAV
 from uavlab.weather import Wind
 from uavlab.weather.turbulence import HIGHEST, LOWEST
@@ -67,7 +67,7 @@ class Body:
     ) -> None:
         self.city, self.uav, self.wind, self.autopilot, self.rng = city, uav, wind, autopilot, rng
         self.state: State = start_of(at)
-        touching = (1 - CONTACT) * uav.diameter / 2
+        touching = contact_distance(uav.diameter)
         self.obstacles = Obstacles(city.occupied, city.runs, city.clearance, city.origin, city.cell, touching, 0.0)
         self.path: Path | None = None
         self.model: Model | None = None

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
+from uavlab.compiled import compilable
 from uavlab.vehicle import UAV
 from uavlab.weather.envelope import CREEP, limits_broken
 from uavlab.weather.forces import STANDARD_AIR, Weather, rain_force
@@ -218,8 +219,14 @@ def gust_deviations(wind: Wind, altitude: float) -> np.ndarray:
     return (wind.gusts != "none") * wind.deviation * np.array([1.0, 1.0, 0.5])
 
 
+@compilable
+def strongest_gust(mean, deviation):
+    """What the strongest gust counts as, 3σ above the mean [m/s]."""
+    return mean + 3 * deviation
+
+
 def why_grounded(uav: UAV, wind: Wind, altitude: float = 30.0) -> tuple[str, ...]:
-    """`grounded_by` in a wind; its strongest gust is 3σ above the mean."""
-    gust = wind.speed + 3 * float(gust_deviations(wind, altitude)[0])
+    """`grounded_by` in a wind."""
+    gust = strongest_gust(wind.speed, float(gust_deviations(wind, altitude)[0]))
     rain = float(rain_force(wind.rain_mm_per_h, uav.rain_area))
     return limits_broken(uav, wind.speed, gust, rain, wind.air_density, CREEP)

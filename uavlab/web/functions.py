@@ -24,7 +24,7 @@ from uavlab.planners.astar import Query, Tree, cheapest_nodes, price_in_zone
 from uavlab.planners.hazard import NO_HAZARD, price_at
 from uavlab.planners.heap import OpenList
 from uavlab.planners.potential_field import ARRIVED, Field, walk_freely, walk_lattice
-from uavlab.planners.question import nearest_node
+from uavlab.planners.question import first_above, nearest_node
 from uavlab.planners.repare import forces_at
 from uavlab.planners.risk_question import STATES
 from uavlab.planners.risk_question import Query as RiskQuery
@@ -36,7 +36,7 @@ from uavlab.planners.theta_star import Query as StraightQuery
 from uavlab.planners.theta_star import Tree as StraightTree
 from uavlab.planners.theta_star import pulled_taut, straight_nodes
 from uavlab.spline.sampling import bends_at, mirrored, points_at, sagittas, speed_in_turn, steps_on
-from uavlab.weather.wind import GUST_SHARES
+from uavlab.weather.wind import GUST_SHARES, strongest_gust
 from uavlab.web.generator import Stream
 
 Flags1 = Annotated[np.ndarray, "boolean", 1]
@@ -91,6 +91,12 @@ def close(occupied: Flags3, closed: Flags3, clearance: Floats3, min_clearance: f
 def nearest(blocked: Flags3, point: Floats1, origin: Floats1, cell: float) -> int:
     """The code of the free voxel nearest to a point, −1 if none is free."""
     return nearest_node(blocked, (point - origin) / cell)
+
+
+@compiled
+def above(blocked: Flags3, barred: Flags3, code: int) -> int:
+    """`first_above`, where a route that takes off below its least height begins."""
+    return first_above(blocked, barred, code)
 
 
 @compiled
@@ -335,6 +341,12 @@ def curve(
     facts[NEAREST], facts[COST], facts[BEND] = least, legs_of(way)[0][-1], bend[: len(way)].max()
     facts[FASTEST] = speed_in_turn(facts[BEND], bank)
     return len(way)
+
+
+@compiled
+def strongest(mean: float, deviation: float) -> float:
+    """`strongest_gust` [m/s]."""
+    return strongest_gust(mean, deviation)
 
 
 @compiled

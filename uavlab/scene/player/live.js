@@ -23,7 +23,7 @@ function playLive(stage, planners, live, buffer) {
     planners.put_runs(flags, ...runs);
     return runs;
   }
-  const walls = runsOf(occupied), zones = runsOf(kept("zones") === undefined ? planners.numbers("boolean", new Uint8Array(count), live.shape) : bits("zones"));
+  const banned = bits("zones"), walls = runsOf(occupied), zones = runsOf(banned);
   const facts = planners.empty("float64", planners.answers.length), points = planners.empty("float64", live.room, 3), price = planners.empty("float64", ...live.shape);
   const nobody = planners.empty("int32", 0), order = live.expansions ? planners.empty("int32", count) : nobody;
   const fact = name => facts.values[planners.answers.indexOf(name)];
@@ -31,8 +31,10 @@ function playLive(stage, planners, live, buffer) {
     rate: planners.numbers("float64", floats("rate", count), live.shape),
     climb: planners.numbers("boolean", Uint8Array.from(live.risk.climb)),
     turn: planners.numbers("boolean", Uint8Array.from(live.risk.turn.flat()), [live.risk.turn.length, 26]),
+    low: bits("low"), barred: planners.empty("boolean", ...live.shape),
     prices: Object.fromEntries(live.risk.prices.map(name => [name, planners.numbers("float64", floats(name, count), [1, count])])),
   };
+  if (risk) planners.close(occupied, banned, clearance, 0, cell, risk.barred);
   const shut = new Map();  // what is closed, by the clearance to keep
   function blockedAt(least) {
     if (!shut.has(least)) {
@@ -88,24 +90,39 @@ function playLive(stage, planners, live, buffer) {
   }
   const keptBy = offer => ({astar: value("keep"), theta: value("keep"), hazard: offer.radius, repare: conditions()?.distance})[offer.kind] ?? 0;
 
+  const isLow = code => risk.low.values[code] && !risk.barred.values[code];
+  function airborne(code) {  // where a planner by risk begins: above a place lower than it flies; −1 if nobody may be there
+    const blocked = blockedAt(0);
+    return !blocked.values[code] ? code : risk && isLow(code) ? planners.above(blocked, risk.barred, code) : -1;
+  }
   function problemOf(end, least) {  // why nobody may be there, in words, and where one may
     const place = state.ends[end], index = indexOf(place), code = codeOf(index), blocked = blockedAt(least);
-    if (!blocked.values[code]) return null;
+    if (!blocked.values[code] || airborne(code) >= 0) return null;
     const here = planners.numbers("float64", place), free = planners.nearest(blocked, here, origin, cell), near = clearance.values[code];
     here.free();
-    const why = occupied.values[code] ? "lies in a building" : closed.values[code] ? "lies where the map is closed"
+    const why = risk && isLow(code) ? `lies below min_height=${live.risk.lowest} m, and there is no free way straight up from it`
+      : occupied.values[code] ? "lies in a building" : closed.values[code] ? "lies where the map is closed"
       : `is ${near.toFixed(2)} m from the nearest obstacle, ${least} m are asked for`;
     return {end, words: `${end} ${shown(place)} ${why}`, free: free < 0 ? null : pointOf(free)};
   }
 
   function solve(offer) {
     const places = [state.ends.start, state.ends.goal], ends = places.map(place => codeOf(indexOf(place)));
+    const both = `start ${shown(places[0])} and goal ${shown(places[1])}`;
     const problem = problemOf("start", keptBy(offer)) ?? problemOf("goal", keptBy(offer));
     if (problem) return {offer, reason: problem.words, problem};
-    if (ends[0] === ends[1]) return {offer, reason: "start and goal lie in the same voxel"};
+    if (ends[0] === ends[1]) return {offer, reason: `${both} lie in the same voxel`};
+    const [source, target] = risk ? ends.map(airborne) : ends;
+    if (source === target) return {offer, reason: `${both} lie above each other, below min_height=${live.risk.lowest} m, where only take-off and landing are allowed`};
     facts.values.fill(0);  // not every planner writes each of them
-    const began = performance.now(), found = SOLVERS[offer.kind](offer, ends, places), took = performance.now() - began;
+    const began = performance.now(), between = SOLVERS[offer.kind](offer, [source, target], places), took = performance.now() - began;
+    const found = between && between + source - ends[0] + target - ends[1];
     if (found > live.room) return {offer, reason: `the route has ${found} points, the page has room for ${live.room}`};
+    if (found > between) {  // take-off and landing
+      points.values.copyWithin(3 * (source - ends[0]), 0, 3 * between);
+      for (let code = ends[0]; code < source; code++) points.values.set(pointOf(code), 3 * (code - ends[0]));
+      for (let code = ends[1]; code < target; code++) points.values.set(pointOf(code), 3 * (found - 1 - code + ends[1]));
+    }
     const [expanded, recorded, outcome] = ["expanded", "recorded", "outcome"].map(fact);
     const answer = {offer, took, expanded, way: points.values.slice(0, 3 * found), points: found};
     if (found === 0) return {...answer, reason: said(live.words[offer.kind === "risk" ? "no_risk" : "no_way"], {start: shown(places[0]), goal: shown(places[1]), reach: offer.kind === "theta" ? expanded : fact("reached")})};
@@ -224,12 +241,13 @@ function playLive(stage, planners, live, buffer) {
   }
 
   // --- answers ---
+  const failed = error => error instanceof RangeError ? "the page has no more memory for this" : error.message;
   let answers = [];
   function plan() {
     if (live.curve) { bend(); return; }
     forgetFlights();
     answers = live.offers.filter(offer => state.shown.has(offer.name)).map(offer => {
-      try { return solve(offer); } catch (error) { return {offer, reason: error instanceof RangeError ? "the page has no more memory for this" : error.message}; }
+      try { return solve(offer); } catch (error) { return {offer, reason: failed(error)}; }
     });
     drawRoutes(answers);
     for (const offer of live.offers) tell(offer, answers.find(answer => answer.offer === offer));
@@ -297,46 +315,49 @@ function playLive(stage, planners, live, buffer) {
     return [speed * Math.sin(turn), speed * Math.cos(turn), 0].map(x => Math.round(1e6 * x) / 1e6 + 0);
   };
   const windWords = () => live.flights ? `(${windOf().slice(0, 2).join(", ")})` : "";
+  const flownBy = answer => at(`offer-${live.offers.indexOf(answer.offer)}`).querySelector(".flown");
   async function fly() {
     forgetFlights();
-    const mine = flying = {}, {total, craft, speed, touching, near: nearGoal, step, every, gust, head} = live.flights;
-    const wind = planners.numbers("float64", windOf()), numbersOf = planners.numbers("float64", craft);
-    const mean = Math.hypot(...windOf()), strongest = mean + 3 * value("gusts");
-    const log = planners.empty("float64", 4000, 12), words = new BigUint64Array(buffer.slice(kept("states"), kept("states") + 32 * total).buffer);
-    const flightState = planners.empty("uint64", 4), intervals = floats("intervals", 2 * (total + 1));
-    for (const answer of answers.filter(a => a.length && !a.reason)) {
-      const row = at(`offer-${live.offers.indexOf(answer.offer)}`).querySelector(".flown");
-      if (strongest > gust || mean > head) {
-        row.textContent = strongest > gust ? `stays on the ground: gusts of ${per(strongest, 1)} m/s, and the thrust holds ${per(gust, 1)} m/s` : `stays on the ground: the mean wind of ${per(mean, 1)} m/s leaves no way against it`;
-        continue;
-      }
-      const way = planners.numbers("float64", answer.way, [answer.points, 3]), tracks = [];
-      let crashed = 0, gaveUp = 0;
-      for (let number = 0; number < total; number++) {
-        if (number % 10 === 0) {
-          row.textContent = `flight ${number} of ${total} …`;
-          await new Promise(requestAnimationFrame);
-          if (flying !== mine) break;
-        }
-        flightState.set(words.subarray(4 * number, 4 * number + 4));
-        const rows = Math.min(planners.fly(way, answer.points, speed, wind, value("gusts"), live.flights.memory, numbersOf, step, every, touching, nearGoal,
-          occupied, clearance, ...walls, origin, cell, flightState, log, facts), 4000), outcome = fact("outcome"), seen = log.values;
-        crashed += outcome === 2;
-        gaveUp += outcome === 3 || outcome === 4 || outcome === 0;
-        if (outcome === 2) crosses.push({place: near([1, 2, 3].map(a => seen[12 * (rows - 1) + a])), element: drawn("crash", live.crash)});
-        if (number < 60)
-          for (let n = 1; n < rows; n++) tracks.push(...[n - 1, n].flatMap(m => near([1, 2, 3].map(a => seen[12 * m + a]))));
-      }
-      way.free();
-      if (flying !== mine) break;
-      objects.flights.add(lines(tracks, answer.offer.color, 0.45));
-      const [low, high] = intervals.slice(2 * crashed, 2 * crashed + 2);
-      row.textContent = `${crashed} of ${total} crash: ${per(1000 * crashed / total, 0)} per 1 000 [${per(1000 * low, 0)}, ${per(1000 * high, 0)}]` + (gaveUp ? `; ${gaveUp} give up` : "");
-      row.dataset.crashed = crashed;
-      viewer.set_dirty();
+    const mine = flying = {}, ways = answers.filter(answer => answer.length && !answer.reason);
+    for (const answer of ways) {
+      try { await flyAlong(answer, mine); } catch (error) { flownBy(answer).textContent = failed(error); }
+      if (flying !== mine) return;
     }
-    for (const numbers of [wind, numbersOf, log, flightState]) numbers.free();
-    if (flying === mine) document.body.dataset.flown = String(Number(document.body.dataset.flown ?? 0) + 1);
+    document.body.dataset.flown = String(Number(document.body.dataset.flown ?? 0) + 1);
+  }
+  async function flyAlong(answer, mine) {
+    const {total, craft, speed, touching, near: nearGoal, step, every, gust, head} = live.flights, row = flownBy(answer);
+    const blowing = windOf(), mean = Math.hypot(...blowing), strongest = planners.strongest(mean, value("gusts"));
+    if (strongest > gust || mean > head) {
+      row.textContent = strongest > gust ? `stays on the ground: gusts of ${per(strongest, 1)} m/s, and the thrust holds ${per(gust, 1)} m/s` : `stays on the ground: the mean wind of ${per(mean, 1)} m/s leaves no way against it`;
+      return;
+    }
+    const words = new BigUint64Array(buffer.slice(kept("states"), kept("states") + 32 * total).buffer), intervals = floats("intervals", 2 * (total + 1));
+    const taken = [planners.numbers("float64", answer.way, [answer.points, 3]), planners.numbers("float64", blowing), planners.numbers("float64", craft),
+      planners.empty("uint64", 4), planners.empty("float64", 4000, 12)];
+    const [way, wind, numbersOf, flightState, log] = taken, tracks = [];
+    let crashed = 0, gaveUp = 0;
+    for (let number = 0; number < total && flying === mine; number++) {
+      flightState.set(words.subarray(4 * number, 4 * number + 4));
+      const rows = Math.min(planners.fly(way, answer.points, speed, wind, value("gusts"), live.flights.memory, numbersOf, step, every, touching, nearGoal,
+        occupied, clearance, ...walls, origin, cell, flightState, log, facts), 4000), outcome = fact("outcome"), seen = log.values;
+      crashed += outcome === 2;
+      gaveUp += outcome === 3 || outcome === 4 || outcome === 0;
+      if (outcome === 2) crosses.push({place: near([1, 2, 3].map(a => seen[12 * (rows - 1) + a])), element: drawn("crash", live.crash)});
+      if (number < 60)
+        for (let n = 1; n < rows; n++) tracks.push(...[n - 1, n].flatMap(m => near([1, 2, 3].map(a => seen[12 * m + a]))));
+      if (number % 10 === 0) {
+        row.textContent = `flight ${number} of ${total} …`;
+        await new Promise(requestAnimationFrame);
+      }
+    }
+    for (const numbers of taken) numbers.free();
+    if (flying !== mine) return;
+    objects.flights.add(lines(tracks, answer.offer.color, 0.45));
+    const [low, high] = intervals.slice(2 * crashed, 2 * crashed + 2);
+    row.textContent = `${crashed} of ${total} crash: ${per(1000 * crashed / total, 0)} per 1 000 [${per(1000 * low, 0)}, ${per(1000 * high, 0)}]` + (gaveUp ? `; ${gaveUp} give up` : "");
+    row.dataset.crashed = crashed;
+    viewer.set_dirty();
   }
 
   // --- ends to drag ---
@@ -377,14 +398,15 @@ function playLive(stage, planners, live, buffer) {
         element.focus();
         grip.setPointerCapture(event.pointerId);
         controls.enabled = false;
-        const from = world(near(state.ends[end])), back = camera.position.clone().sub(from).setY(0).normalize();
-        const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(kind === "height" || event.shiftKey ? back : new THREE.Vector3(0, 1, 0), from);
+        const from = world(near(state.ends[end])), upright = kind === "height" || event.shiftKey;
+        const facing = camera.getWorldDirection(new THREE.Vector3()), up = new THREE.Vector3(0, 1, 0).transformDirection(camera.matrixWorld);
+        const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(upright ? facing : new THREE.Vector3(0, 1, 0), from);
         const offset = rayAt(event).intersectPlane(plane, new THREE.Vector3())?.sub(from) ?? new THREE.Vector3();
         const drag = event => {
-          const hit = rayAt(event).intersectPlane(plane, new THREE.Vector3());
+          const hit = rayAt(event).intersectPlane(plane, new THREE.Vector3())?.sub(offset);
           if (!hit) return;
-          const place = placeOf(hit.sub(offset)), [x, y, z] = state.ends[end];
-          move(end, kind === "height" || event.shiftKey ? [x, y, place[2]] : [place[0], place[1], z]);
+          const [x, y, z] = state.ends[end], risen = hit.clone().sub(from).dot(up) / Math.max(up.y, 0.5);  // from above, too
+          move(end, upright ? [x, y, placeOf(from)[2] + risen] : [...placeOf(hit).slice(0, 2), z]);
         };
         const done = () => { grip.removeEventListener("pointermove", drag); controls.enabled = true; };
         grip.addEventListener("pointermove", drag);
