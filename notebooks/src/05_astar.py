@@ -432,9 +432,15 @@ scene.live(
 )
 
 # %% [markdown]
-# *As the page begins: equally long routes with both estimates.* Along the 26 directions both expand one voxel for each
-# move: 18 to (72.5, 18.5, 30.5), where Dijkstra expands 16,754. Between them A\* still expands one for each move, but
-# the straight distance is too low: to (60.5, 5.5, 30.5) it is 30 against 1,408 (and 67,491). A wall makes both too low.
+# *As the page begins: equally long routes with both estimates.*
+#
+# <details><summary>The answer</summary>
+#
+# Along the 26 directions both expand one voxel for each move: 18 to (72.5, 18.5, 30.5), where Dijkstra expands 16,754.
+# Between them A\* still expands one for each move, but the straight distance is too low: to (60.5, 5.5, 30.5) it is 30
+# against 1,408 (and 67,491). A wall makes both too low.
+#
+# </details>
 
 # %% tags=["check"]
 for goal, counts in {(72.5, 18.5, 30.5): [18, 18, 16754], (60.5, 5.5, 30.5): [30, 1408, 67491]}.items():

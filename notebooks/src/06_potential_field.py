@@ -434,9 +434,15 @@ scene.live(
 )
 
 # %% [markdown]
-# *As the page begins: the field (dotted) stays in the notch, A\* doesn't.* No start frees it, up to 98.5 m or south to 0.5
-# m. The goal does: past the wall's end at $y = 15$ m, from 13.5 m on, and above the wall's top at 66 m, from 66.5 m on.
-# There the foot of its perpendicular lies beside the wall. So it is the goal that makes the trap.
+# *As the page begins: the field (dotted) stays in the notch, A\* doesn't.*
+#
+# <details><summary>The answer</summary>
+#
+# No start frees it, up to 98.5 m or south to 0.5 m. The goal does: past the wall's end at $y = 15$ m, from 13.5 m on,
+# and above the wall's top at 66 m, from 66.5 m on. There the foot of its perpendicular lies beside the wall. So it is
+# the goal that makes the trap.
+#
+# </details>
 
 # %% tags=["check"]
 

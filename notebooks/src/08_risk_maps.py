@@ -537,10 +537,15 @@ yard, road = (47.5, 47.5, level), (112.5, 112.5, level)
 scene.live(campus.city, yard, road, risk=campus, planners=["least risk", "shortest"])
 
 # %% [markdown]
-# *The scene at first. Least risk is 61 % longer than shortest, but causes a tenth of the deaths.* Over the yard $r$ grows
-# from $2.6\cdot10^{-7}$ to $4.3\cdot10^{-7}$ per hour, over the road it falls from $1.1\cdot10^{-6}$ to
-# $5.6\cdot10^{-7}$. From higher up the wreck falls more steeply: it hits fewer people, but harder. Behind trees the harder
-# blow counts more. Without shelter every hit kills anyway.
+# *The scene at first. Least risk is 61 % longer than shortest, but causes a tenth of the deaths.*
+#
+# <details><summary>The answer</summary>
+#
+# Over the yard $r$ grows from $2.6\cdot10^{-7}$ to $4.3\cdot10^{-7}$ per hour, over the road it falls from
+# $1.1\cdot10^{-6}$ to $5.6\cdot10^{-7}$. From higher up the wreck falls more steeply: it hits fewer people, but harder.
+# Behind trees the harder blow counts more. Without shelter every hit kills anyway.
+#
+# </details>
 
 # %% tags=["check"]
 from_below = {

@@ -537,9 +537,15 @@ for v in (4, 10, 16):
 scene.live_curve(city, route.points, camera=(-110, 60), title="One corner, to be repaired by hand")
 
 # %% [markdown]
-# *The curve at first.* Nearly all: with the point at the corner 6 m farther west and 3 m south it keeps 1.07 m, and its
-# bends can be flown at 6.0 m/s. The repair by `smooth` to 1 m leaves 1.7 m/s. It halves the legs, so bends get sharper.
-# By hand the corner moves outwards, and the leg before it grows from 9 to 15 m.
+# *The curve at first.*
+#
+# <details><summary>The answer</summary>
+#
+# Nearly all: with the point at the corner 6 m farther west and 3 m south it keeps 1.07 m, and its bends can be flown at
+# 6.0 m/s. The repair by `smooth` to 1 m leaves 1.7 m/s. It halves the legs, so bends get sharper. By hand the corner
+# moves outwards, and the leg before it grows from 9 to 15 m.
+#
+# </details>
 
 # %% tags=["check"]
 pushed = route.points.copy()

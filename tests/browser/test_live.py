@@ -155,6 +155,21 @@ def test_keys(opened, city):
     assert page.get_attribute(".handle >> nth=0", "aria-label").startswith(f"start at ({start[0]:g}, ")
 
 
+def test_start_over(opened, city):
+    page = opened(live(city, *ENDS, planners=["A*", "Theta*"], shown=["A*"], flights=20))
+    before = page.url, lengths(page), page.inner_text("#where")
+    drag(page, 1, (-70, 30))
+    page.check("#offer-1 input")
+    page.fill("#set-keep", "3")
+    page.fill("#set-wind", "9")
+    page.wait_for_timeout(300)
+    assert before[1:] != (lengths(page), page.inner_text("#where"))
+    page.click("#again")
+    page.wait_for_timeout(300)
+    assert before == (page.url, lengths(page), page.inner_text("#where"))
+    assert page.inner_text("#is-keep") == "2 m"
+
+
 def test_a_start_in_a_building_is_said_and_a_free_point_offered(opened, city):
     page = opened(live(city, *ENDS))
     page.focus(".handle >> nth=0")
@@ -233,7 +248,8 @@ def test_risk_below_the_ends_and_along_the_routes(opened):
     digits, power = f"{campus.fatalities(routes['least risk']):.1e}".split("e")
     superscripts = str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     assert f"{digits}·10{superscripts} deaths a flight" in said(page)
-    assert page.inner_text("#below").count("deaths an hour") == 2
+    assert page.inner_text("#where").count("deaths an hour") == 2
+    assert page.inner_text("#where").startswith("start at (12.5, 17.5, 22.5) m, where r = ")
     drag(page, 1, (-40, 20))
     assert lengths(page)["least risk"] != found["least risk"]
 

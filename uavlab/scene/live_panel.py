@@ -26,12 +26,13 @@ def panel(looks: Mapping[str, Style], first: Mapping[str, str], now: Settings, t
     times = told.get("flights", {}).get("total", 0)
     fly = f'<button id="fly">Fly each {times} times</button>' if times else ""
     ends = "control points" if "curve" in told else "start and goal"
-    below = '<p id="below" role="status"></p>' if "risk" in told else ""
+    where = "" if "curve" in told else '<p id="where" role="status"></p>'
     return (
         f'<section id="live"><ul id="offers">{rows}</ul>'
         '<p id="wrong" role="alert" hidden><span></span> <button id="instead"></button></p>'
-        f"{below}"
-        f'{sliders}{expanded * told["expansions"]}<p class="acts">{fly}<button id="link">Copy link</button></p>'
+        f"{where}"
+        f'{sliders}{expanded * told["expansions"]}<p class="acts">{fly}<button id="again">Start over</button>'
+        '<button id="link">Copy link</button></p>'
         '<input id="linked" readonly hidden aria-label="Link"><details><summary>As Python</summary>'
         '<pre id="python" tabindex="0"></pre></details>'
         f"<p>Drag {ends} over the map, and the arrow above them for their height.</p>"

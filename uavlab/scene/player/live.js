@@ -47,8 +47,13 @@ function playLive(stage, planners, live, buffer) {
   }
 
   // --- state ---
-  const state = {ends: Object.fromEntries(live.ends), values: {}, shown: new Set(live.offers.filter(o => o.shown).map(o => o.name))};
-  for (const slider of live.sliders) state.values[slider.name] = slider.value;
+  const state = {};
+  function startOver() {
+    state.ends = Object.fromEntries(live.ends);
+    state.values = Object.fromEntries(live.sliders.map(({name, value}) => [name, value]));
+    state.shown = new Set(live.offers.filter(offer => offer.shown).map(offer => offer.name));
+  }
+  startOver();
   const indexOf = place => place.map((x, a) => Math.min(Math.max(Math.floor((x - live.origin[a]) / cell), 0), live.shape[a] - 1));
   const snapped = place => live.curve ? place.map((x, a) => Math.round(10 * Math.min(Math.max(x, live.origin[a]), live.origin[a] + cell * live.shape[a])) / 10) : centreOf(indexOf(place));
   const codeOf = ([i, j, k]) => (i * ny + j) * nz + k;
@@ -260,7 +265,7 @@ function playLive(stage, planners, live, buffer) {
       button.textContent = problem.free ? `Move it to the nearest free point ${shown(problem.free)}` : "";
       button.onclick = () => move(problem.end, problem.free);
     }
-    if (risk) at("below").textContent = live.ends.map(([end]) => `r at the ${end}: ${power(risk.rate.values[codeOf(indexOf(state.ends[end]))])} deaths an hour`).join(" · ");
+    at("where").textContent = Object.entries(state.ends).map(([end, place]) => `${end} at ${shown(place)} m` + (risk ? `, where r = ${power(risk.rate.values[codeOf(indexOf(place))])} deaths an hour` : "")).join("; ");
     for (const handle of handles) handle.element.classList.toggle("wrong", answers.some(answer => answer.problem?.end === handle.end));
     at("python").textContent = asPython();
     remember();
@@ -453,6 +458,7 @@ function playLive(stage, planners, live, buffer) {
     };
   if (live.flights) at("fly").onclick = fly;
   if (live.expansions) at("expanded").onchange = () => drawRoutes(answers);
+  at("again").onclick = () => { startOver(); showValues(); later(); };
   at("link").onclick = async () => {
     const page = alone ? location : outside();
     const text = `${page ? page.href.split("#")[0] : ""}#${fragment()}`;
