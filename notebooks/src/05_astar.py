@@ -413,8 +413,8 @@ assert (round(shortest.length, 1), round(shortest.length - cutting, 1)) == (66.4
 # nodes away from the goal still wait in the open list, and they lead out. Dijkstra expands 235,320 of the 855,142 free
 # nodes.
 #
-# > **Play.** Race the three. Tick *Dijkstra* and *Show expanded voxels*. Then drag the goal out of the shadow of the
-# > building, south of it, where no wall is between start and goal. In which directions from the start do both estimates
+# > **Play.** Race the three. Tick *Dijkstra* and *Show expanded voxels*. Then drag the goal to where no wall is between
+# > it and the start: west into the notch, or south of the building (arrow keys hit a voxel exactly). In which directions from the start do both estimates
 # > expand equally few voxels, and in which does the straight distance expand many more?
 
 # %%

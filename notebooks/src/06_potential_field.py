@@ -418,7 +418,7 @@ plot.area_map(city, areas | {"building": city.occupied[:, :, 30]},
 # Near a wall's end the rule isn't sharp. East of the L-shaped building (pink) the foot lies on the wall, but half a
 # metre from its end, and continuous moves slip around it. (If only the nearest voxel pushes, they don't.)
 #
-# > **Play.** Out of the notch again. Move one end at a time (focus its ring; arrow keys and Page Up move it by 1 m): the
+# > **Play.** Out of the notch again. Move one end at a time (click its ring; arrow keys and Page Up move it by 1 m, with Shift by 10): the
 # > start up, the start south, the goal up, the goal south. Which of them frees the field, and from which place on?
 
 # %%
@@ -438,7 +438,7 @@ scene.live(
 #
 # <details><summary>The answer</summary>
 #
-# No start frees it, up to 98.5 m or south to 0.5 m. The goal does: past the wall's end at $y = 15$ m, from 13.5 m on,
+# No start frees it, up to 99.5 m or south to 0.5 m. The goal does: past the wall's end at $y = 15$ m, from 13.5 m on,
 # and above the wall's top at 66 m, from 66.5 m on. There the foot of its perpendicular lies beside the wall. So it is
 # the goal that makes the trap.
 #
@@ -453,8 +453,8 @@ def arrives(start=(90.5, 18.5, 30.5), goal=(50.5, 44.5, 30.5)):
 
 
 assert [arrives(goal=(50.5, y + 0.5, 30.5)) for y in range(45)] == [y <= 13 for y in range(45)]
-assert [arrives(goal=(50.5, 44.5, z + 0.5)) for z in range(30, 99)] == [z >= 66 for z in range(30, 99)]
-assert not any(arrives(start=(90.5, 18.5, z + 0.5)) for z in range(30, 99))
+assert [arrives(goal=(50.5, 44.5, z + 0.5)) for z in range(30, 100)] == [z >= 66 for z in range(30, 100)]
+assert not any(arrives(start=(90.5, 18.5, z + 0.5)) for z in range(30, 100))
 assert not any(arrives(start=(90.5, y + 0.5, 30.5)) for y in range(19))
 assert city.occupied[69, 15:35].sum(axis=1).tolist() == [66] * 20
 assert not city.occupied[69, :15].any()

@@ -528,9 +528,9 @@ for route in routes.values():
 assert round(routes["along roads"].length / routes["straight"].length, 2) == 1.32
 
 # %% [markdown]
-# > **Play.** Two planners of chapter 09 answer at once; *shortest* ignores risk. The start is over a yard with sparse
-# > trees, the goal over a road. Move each from 7.5 to 77.5 m (arrow, or Page Down and Up). Over which does
-# > $r$ grow, and why?
+# > **Play.** Two planners answer at once: *least risk* (chapter 09), and *shortest*, which ignores people. The start is
+# > over a yard with sparse trees, the goal over a road (other places than above). Move each from 7.5 to 77.5 m (Page Up
+# > and Down; the camera *side* has room for that). Over which does $r$ grow? What could be the reason?
 
 # %%
 yard, road = (47.5, 47.5, level), (112.5, 112.5, level)

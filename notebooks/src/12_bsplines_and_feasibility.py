@@ -530,8 +530,9 @@ for v in (4, 10, 16):
 # of 9.7 m/s to 5.2. By all limits it is 6.6 against 4.9, since many routes can't be flown faster for their slopes
 # anyway. Does that have to be?
 #
-# > **Play.** This is the curve of the corner above before its repair. It touches the building. Drag one control point, or
-# > move it by its arrow keys, until the curve keeps 1 m. What is left of its 6.2 m/s?
+# > **Play.** This is the curve of the corner above before its repair. It touches the building. Drag the control
+# > point at the corner, or click it and use the arrow keys, at its height, until the clearance is 1 m. What is left of
+# > the 6.2 m/s that its bends allow?
 
 # %%
 scene.live_curve(city, route.points, camera=(-110, 60), title="One corner, to be repaired by hand")

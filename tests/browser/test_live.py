@@ -72,6 +72,12 @@ def as_python(page, **names):
     return names
 
 
+def here(page):
+    """Where the start is, as the page says."""
+    x, y, z = page.inner_text("#where").split("(")[1].split(")")[0].split(", ")
+    return float(x), float(y), float(z)
+
+
 def drag(page, number, to, kind="level"):
     """Take an end, and let go of it so many pixels away."""
     grip = page.locator(f".handle .{kind}").nth(number).bounding_box()
@@ -188,6 +194,30 @@ def test_a_start_in_a_building_is_said_and_a_free_point_offered(opened, city):
     assert set(lengths(page)) == {"A*"}
 
 
+@pytest.mark.parametrize(("planner", "fewest"), [("A*", 4), ("Theta*", 4), ("hazard A*", 8), ("REPARE", 5)])
+def test_a_start_too_near_a_wall_is_refused_as_by_python(opened, city, planner, fewest):
+    page = opened(
+        live(city, *ENDS, planners=[planner], settings={"keep": 4.5} if planner in ("A*", "Theta*") else None)
+    )
+    page.focus(".handle >> nth=0")
+    planned, refusal = 0, ""
+    while not refusal and city.clearance[tuple(city.cell_of(here(page)))] > 0.5:  # on to the wall
+        page.keyboard.press("ArrowLeft")
+        page.wait_for_timeout(150)
+        try:
+            (route,) = as_python(page, city=city)["routes"].values()
+        except ValueError as error:
+            refusal = str(error)
+        else:
+            assert lengths(page) == {planner: route.length}
+            planned += 1
+    assert planned >= fewest
+    assert bool(refusal) == (planner != "hazard A*")  # which keeps no more than its body away
+    if refusal:
+        assert page.inner_text("#instead").split("point ")[1] in refusal
+        assert lengths(page) == {}
+
+
 def test_a_goal_out_of_reach_has_pythons_reason(opened):
     occupied = np.zeros((12, 12, 12), bool)
     occupied[3:8, 3:8, 3:8] = True
@@ -211,12 +241,12 @@ def test_flights_are_those_of_monte_carlo(opened, city):
     assert crashed[0] > crashed[1]
     for number, count in enumerate(crashed):
         low, high = share_interval(count, 60)
-        assert f"[{1000 * low:.0f}, {1000 * high:.0f}]" in page.inner_text(f"#offer-{number} .flown")
+        assert f"(95 %: {1000 * low:.0f} to {1000 * high:.0f})" in page.inner_text(f"#offer-{number} .flown")
     assert page.locator("#overlay [data-kind=crash]").count() == sum(crashed)
     page.focus(".handle >> nth=0")
     page.keyboard.press("ArrowRight")
     page.wait_for_timeout(300)
-    assert page.inner_text("#offer-0 .flown") == ""  # they flew another route
+    assert page.get_attribute("#offer-0 .flown", "class") == "flown before"  # they flew another route
     assert page.locator("#overlay [data-kind=crash]").count() == 0
     page.fill("#set-wind", "14")
     page.fill("#set-gusts", "4")

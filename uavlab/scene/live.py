@@ -147,12 +147,14 @@ def live(
     where = city if risk is None else risk
     routes = [replace(OFFERS[name].plan(where, *ends, now), planner=name) for name in names if name in first]
     drawing = drawing_with(city, routes, looks, risk, title)
+    given = ["city"] + ["risk"] * (risk is not None) + ["uav"] * (flights > 0 and uav != LIGHT_QUADROTOR)
     if flights:
         told["flights"] = flights_told(flights, uav, kept)
     told |= {
         "ends": [["start", ends[0].tolist()], ["goal", ends[1].tolist()]],
         "offers": [offer_told(name, looks[name], name in first) for name in names], "sliders": sliders_told(now),
         "conditions": conditions_told() if "conditions" in now else [], "expansions": expansions,
+        "given": ", ".join(given),
         "words": {"no_way": NO_WAY, "no_risk": NO_SAFE_WAY, "field": REASONS},
     }  # fmt: skip
     said = {route.planner: f"{route.length:.1f} m" if route.reached else route.reason for route in routes}
@@ -183,7 +185,8 @@ def live_curve(
 ) -> Scene:
     """A scene with a cubic B-spline whose control points a reader drags.
 
-    Beside it stand its length, its clearance, its tightest bend on the plan, and the speed at which a bank holds that.
+    Beside it stand its length, its clearance, its tightest bend on the plan with the speed at which a bank holds that,
+    and its steepest climb or descent.
 
     Parameters
     ----------

@@ -97,6 +97,6 @@ def flights_told(count: int, uav: UAV, kept: Bytes) -> dict[str, Any]:
             *(["from uavlab.vehicle import LIGHT_QUADROTOR"] if uav == LIGHT_QUADROTOR else []),
         ],
         "python": f"wind = Wind({{wind}}, deviation={{gusts}})\n"
-        "for name, route in routes.items():\n"
-        f"    print(name, crash_rate(monte_carlo(route, city, {known}, wind, rng=0, flights={count})))",
+        "for name, route in routes.items():\n    if route.reached:\n"
+        f"        print(name, crash_rate(monte_carlo(route, city, {known}, wind, rng=0, flights={count})))",
     }  # fmt: skip

@@ -35,7 +35,7 @@ from uavlab.planners.theta_star import WEIGHT as STRAIGHT_WEIGHT
 from uavlab.planners.theta_star import Query as StraightQuery
 from uavlab.planners.theta_star import Tree as StraightTree
 from uavlab.planners.theta_star import pulled_taut, straight_nodes
-from uavlab.spline.sampling import bends_at, mirrored, points_at, sagittas, speed_in_turn, steps_on
+from uavlab.spline.sampling import bends_at, mirrored, points_at, sagittas, speed_in_turn, steps_on, tangents_of
 from uavlab.weather.wind import GUST_SHARES, strongest_gust
 from uavlab.web.generator import Stream
 
@@ -49,11 +49,14 @@ Ints1 = Annotated[np.ndarray, "int32", 1]
 Longs1 = Annotated[np.ndarray, "int64", 1]
 Words1 = Annotated[np.ndarray, "uint64", 1]
 
-COST, EXPANDED, REACHED, RECORDED, OUTCOME, STEPS, NEAREST, ENERGY, BEND, FASTEST = range(10)
-ANSWERS = ("cost", "expanded", "reached", "recorded", "outcome", "steps", "nearest", "energy", "bend", "fastest")
+COST, EXPANDED, REACHED, RECORDED, OUTCOME, STEPS, NEAREST, ENERGY, BEND, FASTEST, STEEPEST = range(11)
+ANSWERS = (
+    "cost", "expanded", "reached", "recorded", "outcome", "steps", "nearest", "energy", "bend", "fastest", "steepest",
+)  # fmt: skip
 """Where answers stand in `facts`: a route's cost, expanded nodes, voxels within reach where there is no way, nodes that
 are recorded, how a walk or a flight ended, its logged steps, least distance to obstacles [m], energy used [J], and
-of a curve the greatest curvature on the plan [1/m] and the speed [m/s] at which a bank angle holds it."""
+of a curve the greatest curvature on the plan [1/m] the speed [m/s] at which
+a bank angle holds it, and the greatest climb or descent, as a share of the way."""
 
 
 @compiled
@@ -340,6 +343,7 @@ def curve(
         least = min(least, max(cell * apart[n] - off[n], 0.0))
     facts[NEAREST], facts[COST], facts[BEND] = least, legs_of(way)[0][-1], bend[: len(way)].max()
     facts[FASTEST] = speed_in_turn(facts[BEND], bank)
+    facts[STEEPEST] = np.abs(tangents_of(velocity)[:, 2]).max()
     return len(way)
 
 

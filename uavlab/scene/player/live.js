@@ -93,20 +93,21 @@ function playLive(stage, planners, live, buffer) {
   function straightened(found, least) {
     return found && planners.straighten(points, found, price, least, live.slack, origin, cell, ...walls, ...zones, facts);
   }
+  const timed = new Set();
   const keptBy = offer => ({astar: value("keep"), theta: value("keep"), hazard: offer.radius, repare: conditions()?.distance})[offer.kind] ?? 0;
 
   const isLow = code => risk.low.values[code] && !risk.barred.values[code];
   function airborne(code) {  // where a planner by risk begins: above a place lower than it flies; −1 if nobody may be there
     const blocked = blockedAt(0);
-    return !blocked.values[code] ? code : risk && isLow(code) ? planners.above(blocked, risk.barred, code) : -1;
+    return !blocked.values[code] ? code : isLow(code) ? planners.above(blocked, risk.barred, code) : -1;
   }
   function problemOf(end, least) {  // why nobody may be there, in words, and where one may
     const place = state.ends[end], index = indexOf(place), code = codeOf(index), blocked = blockedAt(least);
-    if (!blocked.values[code] || airborne(code) >= 0) return null;
+    if (!blocked.values[code] || risk && airborne(code) >= 0) return null;
     const here = planners.numbers("float64", place), free = planners.nearest(blocked, here, origin, cell), near = clearance.values[code];
     here.free();
     const why = risk && isLow(code) ? `lies below min_height=${live.risk.lowest} m, and there is no free way straight up from it`
-      : occupied.values[code] ? "lies in a building" : closed.values[code] ? "lies where the map is closed"
+      : occupied.values[code] ? "lies in a building" : closed.values[code] ? `lies in a no-fly zone${risk ? ", or nearer to a roof or the ground than a flight may be" : ""}`
       : `is ${near.toFixed(2)} m from the nearest obstacle, ${least} m are asked for`;
     return {end, words: `${end} ${shown(place)} ${why}`, free: free < 0 ? null : pointOf(free)};
   }
@@ -119,8 +120,11 @@ function playLive(stage, planners, live, buffer) {
     if (ends[0] === ends[1]) return {offer, reason: `${both} lie in the same voxel`};
     const [source, target] = risk ? ends.map(airborne) : ends;
     if (source === target) return {offer, reason: `${both} lie above each other, below min_height=${live.risk.lowest} m, where only take-off and landing are allowed`};
+    const ask = () => { const began = performance.now(); return [SOLVERS[offer.kind](offer, [source, target], places), performance.now() - began]; };
+    if (!timed.has(offer)) ask();  // the first time the browser still compiles
+    timed.add(offer);
     facts.values.fill(0);  // not every planner writes each of them
-    const began = performance.now(), between = SOLVERS[offer.kind](offer, [source, target], places), took = performance.now() - began;
+    const [between, took] = ask();
     const found = between && between + source - ends[0] + target - ends[1];
     if (found > live.room) return {offer, reason: `the route has ${found} points, the page has room for ${live.room}`};
     if (found > between) {  // take-off and landing
@@ -219,21 +223,23 @@ function playLive(stage, planners, live, buffer) {
       while (low > 0 && !occupied.values[codeOf([i, j, low - 1])]) low--;
       ends.push(...near(place), ...near([place[0], place[1], live.origin[2] + cell * low]));
     }
-    const shown = lines(ends, "#222", 0.7);
-    shown.material.depthTest = false;
-    return shown;
+    const through = lines(ends, "#222", 0.25);
+    through.material.depthTest = false;  // faintly, where a building hides it
+    return [lines(ends, "#222", 0.9), through];
   }
   function drawRoutes(answers) {
-    emptied(objects.routes).add(stalks());
+    emptied(objects.routes).add(...stalks());
     emptied(objects.expanded);
     for (const stop of stops.splice(0)) stop.element.remove();
-    for (const {offer, way, order, reason} of answers) {
+    for (const {offer, way, order, reason} of [...answers].sort((a, b) => (b.order?.length ?? 0) - (a.order?.length ?? 0))) {  // few above many
       if (reason && way?.length) stops.push({place: near([...way.slice(-3)]), element: drawn("stopped", offer.color)});
       if (way?.length > 3) objects.routes.add(...tube(dashed(cornersOf(way), offer.dashes, live.width), live.width / 2, offer.color));
       if (order && at("expanded").checked) {
         const step = Math.ceil(order.length / 40000), places = [];
         for (let n = 0; n < order.length; n += step) places.push(...near(pointOf(order[n])));
-        objects.expanded.add(dots(places, offer.color, 0.45 * cell, 0.35));
+        const seen = dots(places, offer.color, 0.45 * cell, 0.35);
+        seen.renderOrder = objects.expanded.children.length;
+        objects.expanded.add(seen);
       }
     }
     viewer.set_dirty();
@@ -241,8 +247,11 @@ function playLive(stage, planners, live, buffer) {
   function forgetFlights() {
     emptied(objects.flights);
     for (const cross of crosses.splice(0)) cross.element.remove();
-    for (const row of document.querySelectorAll("#offers .flown")) row.textContent = "";
-    flying = null;
+    for (const row of document.querySelectorAll("#offers .flown")) {  // counts stay to be compared with the next
+      row.classList.add("before");
+      delete row.dataset.crashed;
+    }
+    stopped();
   }
 
   // --- answers ---
@@ -276,15 +285,16 @@ function playLive(stage, planners, live, buffer) {
     const places = Object.values(state.ends);
     control.set(places.flat());
     const began = performance.now(), found = planners.curve(control, places.length, live.curve.step, live.curve.bank, clearance, ...walls, origin, cell, points, bends, facts);
-    const took = performance.now() - began, [row] = live.offers, [length, nearest, tightest, fastest] = ["cost", "nearest", "bend", "fastest"].map(fact);
+    const took = performance.now() - began, [row] = live.offers, [length, nearest, tightest, fastest, steepest] = ["cost", "nearest", "bend", "fastest", "steepest"].map(fact);
     emptied(objects.routes);
     if (found <= live.room && state.shown.has(row.name)) objects.routes.add(...tube(dashed(cornersOf(points.values.slice(0, 3 * found)), row.dashes, live.width), live.width / 2, row.color));
-    objects.routes.add(lines(places.slice(1).flatMap((place, n) => [...near(places[n]), ...near(place)]), "#222", 0.6), stalks());
+    objects.routes.add(lines(places.slice(1).flatMap((place, n) => [...near(places[n]), ...near(place)]), "#222", 0.6), ...stalks());
     const words = at("offer-0").querySelector(".found");
-    words.textContent = found > live.room ? "the curve is too long for the page" : [`${per(length, 1)} m`, nearest > 0 ? `clearance ${per(nearest, 2)} m` : "it touches a building",
-      tightest > 1e-9 ? `tightest bend ${per(1 / tightest, 1)} m of radius: ${per(fastest, 1)} m/s at a bank of ${live.curve.degrees}°` : "straight", `${per(took, 1)} ms`].join(" · ");
+    words.textContent = found > live.room ? "the curve is too long for the page" : [`${per(length, 1)} m long`, nearest > 0 ? `clearance ${per(nearest, 2)} m` : "it touches a building",
+      tightest > 1e-9 ? `tightest bend ${per(1 / tightest, 1)} m of radius: ${per(fastest, 1)} m/s at a bank of ${live.curve.degrees}°` : "straight",
+      `climbs or sinks by ${per(Math.asin(steepest) * 180 / Math.PI, 0)}° at most`, `${per(took, 1)} ms`].join(" · ");
     words.dataset.length = String(length);
-    at("python").textContent = `from uavlab.spline import Curve\n\ncurve = Curve([\n${places.map(place => `    ${python(place)},`).join("\n")}\n], step=${live.curve.step})\nprint(curve.length, curve.clearance(city), curve.level_curvature.max())`;
+    at("python").textContent = `from uavlab.spline import Curve\n\ncurve = Curve([\n${places.map(place => `    ${python(place)},`).join("\n")}\n], step=${live.curve.step})\nprint(curve.length, curve.clearance(city), curve.level_curvature.max(), abs(curve.pitch).max())`;
     remember();
     viewer.set_dirty();
     document.body.dataset.planned = String(Number(document.body.dataset.planned ?? 0) + 1);
@@ -308,7 +318,12 @@ function playLive(stage, planners, live, buffer) {
     const numbersOf = {start: python(state.ends.start), goal: python(state.ends.goal), ...state.values, conditions: conditions()?.python, wind: windWords()};
     const chosen = live.offers.filter(offer => state.shown.has(offer.name));
     const calls = chosen.map(offer => said(offer.python[value("keep") === 0 && offer.python.length > 1 ? 1 : 0], numbersOf));
-    return [...new Set(chosen.flatMap(offer => offer.imports)), ...(live.flights?.imports ?? []), "",
+    const taken = new Map();  // from which module what
+    for (const line of [...chosen.flatMap(offer => offer.imports), ...(live.flights?.imports ?? [])]) {
+      const [module, names] = line.slice("from ".length).split(" import ");
+      taken.set(module, [...new Set([...(taken.get(module) ?? []), ...names.split(", ")])].sort());
+    }
+    return [...[...taken].sort().map(([module, names]) => `from ${module} import ${names.join(", ")}`), "", `# ${live.given} as in the page`,
             "routes = {", ...calls.map((call, n) => `    ${JSON.stringify(chosen[n].name)}: ${call},`), "}",
             ...(live.flights ? [said(live.flights.python, numbersOf)] : [])].join("\n");
   }
@@ -320,15 +335,29 @@ function playLive(stage, planners, live, buffer) {
     return [speed * Math.sin(turn), speed * Math.cos(turn), 0].map(x => Math.round(1e6 * x) / 1e6 + 0);
   };
   const windWords = () => live.flights ? `(${windOf().slice(0, 2).join(", ")})` : "";
+  function stopped() {
+    flying = null;
+    if (live.flights) at("fly").textContent = flyWords;
+  }
+  const flyWords = live.flights && at("fly").textContent;
   const flownBy = answer => at(`offer-${live.offers.indexOf(answer.offer)}`).querySelector(".flown");
   async function fly() {
     forgetFlights();
     const mine = flying = {}, ways = answers.filter(answer => answer.length && !answer.reason);
+    at("fly").textContent = "Stop";
     for (const answer of ways) {
+      flownBy(answer).classList.remove("before");
       try { await flyAlong(answer, mine); } catch (error) { flownBy(answer).textContent = failed(error); }
       if (flying !== mine) return;
     }
+    stopped();
     document.body.dataset.flown = String(Number(document.body.dataset.flown ?? 0) + 1);
+  }
+  function crossAt(place, words) {
+    const element = drawn("crash", live.crash);
+    element.classList.add("crash");
+    element.appendChild(document.createElementNS(element.namespaceURI, "title")).textContent = words;
+    return {place, element};
   }
   async function flyAlong(answer, mine) {
     const {total, craft, speed, touching, near: nearGoal, step, every, gust, head} = live.flights, row = flownBy(answer);
@@ -348,11 +377,12 @@ function playLive(stage, planners, live, buffer) {
         occupied, clearance, ...walls, origin, cell, flightState, log, facts), 4000), outcome = fact("outcome"), seen = log.values;
       crashed += outcome === 2;
       gaveUp += outcome === 3 || outcome === 4 || outcome === 0;
-      if (outcome === 2) crosses.push({place: near([1, 2, 3].map(a => seen[12 * (rows - 1) + a])), element: drawn("crash", live.crash)});
+      if (outcome === 2) crosses.push(crossAt(near([1, 2, 3].map(a => seen[12 * (rows - 1) + a])), `${answer.offer.name}, flight ${number + 1}`));
       if (number < 60)
         for (let n = 1; n < rows; n++) tracks.push(...[n - 1, n].flatMap(m => near([1, 2, 3].map(a => seen[12 * m + a]))));
       if (number % 10 === 0) {
         row.textContent = `flight ${number} of ${total} …`;
+        viewer.set_dirty();
         await new Promise(requestAnimationFrame);
       }
     }
@@ -360,7 +390,7 @@ function playLive(stage, planners, live, buffer) {
     if (flying !== mine) return;
     objects.flights.add(lines(tracks, answer.offer.color, 0.45));
     const [low, high] = intervals.slice(2 * crashed, 2 * crashed + 2);
-    row.textContent = `${crashed} of ${total} crash: ${per(1000 * crashed / total, 0)} per 1 000 [${per(1000 * low, 0)}, ${per(1000 * high, 0)}]` + (gaveUp ? `; ${gaveUp} give up` : "");
+    row.textContent = `${crashed} of ${total} crash: ${per(1000 * crashed / total, 0)} per 1 000 (95 %: ${per(1000 * low, 0)} to ${per(1000 * high, 0)})` + (gaveUp ? `; ${gaveUp} give up` : "");
     row.dataset.crashed = crashed;
     viewer.set_dirty();
   }
@@ -424,13 +454,23 @@ function playLive(stage, planners, live, buffer) {
       if (!step) return;
       event.preventDefault();
       event.stopPropagation();
-      move(end, state.ends[end].map((x, a) => x + (live.curve ? 1 : cell) * step[a]));
+      move(end, state.ends[end].map((x, a) => x + (live.curve ? 1 : cell) * (event.shiftKey ? 10 : 1) * step[a]));
     });
     return {end, element};
   });
+  function hidden(place) {  // by a building, from where the camera stands
+    const eye = placeOf(camera.position), away = eye.map((x, a) => x - place[a]), size = Math.hypot(...away), top = live.origin.map((x, a) => x + cell * live.shape[a]);
+    for (let way = cell; way < size; way += cell / 2) {
+      const here = place.map((x, a) => x + way / size * away[a]);
+      if (here.some((x, a) => x < live.origin[a] || x >= top[a])) return false;
+      if (occupied.values[codeOf(indexOf(here))]) return true;
+    }
+    return false;
+  }
   stage.after.push(() => {
     for (const {end, element} of handles) {
       put(element, near(state.ends[end]), true);
+      element.classList.toggle("behind", hidden(state.ends[end]));
       element.setAttribute("aria-label", `${end} at ${shown(state.ends[end])} m; arrow keys move it, Page Up and Page Down change its height`);
     }
     for (const {element, place} of [...crosses, ...stops]) put(element, place, true);
@@ -456,7 +496,7 @@ function playLive(stage, planners, live, buffer) {
       showValues();
       if (plans) later(); else { forgetFlights(); at("python").textContent = asPython(); remember(); viewer.set_dirty(); }
     };
-  if (live.flights) at("fly").onclick = fly;
+  if (live.flights) at("fly").onclick = () => { if (flying) { forgetFlights(); viewer.set_dirty(); } else fly(); };
   if (live.expansions) at("expanded").onchange = () => drawRoutes(answers);
   at("again").onclick = () => { startOver(); showValues(); later(); };
   at("link").onclick = async () => {
@@ -478,6 +518,7 @@ function playLive(stage, planners, live, buffer) {
   function recall() {
     const fields = new URLSearchParams((alone ? location : outside())?.hash.slice(1) ?? "");
     if (fields.get("scene") !== live.id) return;
+    if (!alone) window.frameElement.scrollIntoView({block: "center"});
     for (const [end] of live.ends) {
       const place = fields.get(end)?.split(",").map(Number);
       if (place?.length === 3 && place.every(Number.isFinite)) state.ends[end] = snapped(place);
