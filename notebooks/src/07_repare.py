@@ -650,7 +650,7 @@ scene.live(
 # %% tags=["check"]
 blowing, still_air = (Wind((0.0, mean), deviation=gusts) for mean, gusts in ((12.0, 3.0), (0.0, 0.0)))
 ways_out = [astar(city, notch, middle)] + [
-    repare(city, notch, middle, load, disturbance)
+    repare(city, notch, middle, load=load, disturbance=disturbance)
     for load, disturbance in (
         ("light", "mild"), ("moderate", "mild"), ("heavy", "mild"), ("light", "moderate"), ("light", "heavy"),
     )

@@ -50,7 +50,7 @@ SLIDERS = {
     "keep": Slider("Distance to keep", " m", 0.0, 8.0, 0.5, 2.0),
     "omega": Slider("Price of the zone ω", "", 0.1, 3.0, 0.1, 1.0),
     "sigma": Slider("σ of the offset", " m", 0.1, 2.5, 0.1, 0.8),
-    "reach": Slider("Range of the push R", " m", 1.0, 12.0, 0.5, 5.0),
+    "reach": Slider("Range of push R", " m", 1.0, 12.0, 0.5, 5.0),
     "conditions": Slider("Planned for: load, disturbance", "", 0, len(CONDITIONS) - 1, 1, 0),
     "wind": Slider("Mean wind", " m/s", 0.0, 14.0, 0.5, 6.0, plans=False),
     "towards": Slider("It blows towards", "°", 0, 355, 5, 90, plans=False),
