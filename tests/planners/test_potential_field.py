@@ -290,7 +290,7 @@ def test_trembling_gets_smaller_with_the_step_and_never_arrives(table1):
     spread = []
     for step in (0.5, 0.1):
         route = potential_field(table1, NOTCH, MIDDLE, moves="continuous", step=step)
-        assert "to and fro" in route.reason
+        assert "back and forth" in route.reason
         spread.append(np.ptp(route.points[-500:], axis=0).max())
         assert route.points[-500:].mean(axis=0) == pytest.approx([73.41, 31.26, 30.0], abs=0.3)
     assert spread[1] < 0.4 * spread[0]
@@ -309,7 +309,7 @@ def test_a_wall_straight_ahead_stops_it_where_pull_and_push_cancel():
     route = potential_field(wall, (5.5, 7.5, 7.5), (28.5, 7.5, 7.5), obstacles="surface", push=5.0, reach=5.0)
     balance = next(d for d in np.arange(0.5, 5, 1)[::-1] if repulsion(d, 5.0, 5.0) > 1)  # nearest centre pushed back
     assert route.points[:, 0].max() == 20 - balance
-    assert "it goes to and fro there" in route.reason
+    assert "it goes back and forth there" in route.reason
 
 
 def test_no_move_along_the_force_is_said():

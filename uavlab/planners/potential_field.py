@@ -132,7 +132,7 @@ def potential_field(
     >>> potential_field(city, (5, 5, 30), (5, 95, 30))
     <Route by potential field: 90.0 m, 91 waypoints>
     >>> potential_field(city, (5, 5, 30), (95, 95, 30)).reason
-    'stuck in a local minimum at (67.5, 57.5, 30.5), 47.2 m from the goal: it goes to and fro there'
+    'stuck in a local minimum at (67.5, 57.5, 30.5), 47.2 m from the goal: it goes back and forth there'
     """
     began = time.perf_counter()
     checks.instance("city", city, City)
@@ -170,7 +170,7 @@ ARRIVED, TRAPPED, CIRCLES, CRASHED, FORBIDDEN, GAVE_UP = range(6)
 REASONS = (
     "",
     "stuck in a local minimum at {place}, {left:.1f} m from the goal: no move goes along the force",
-    "stuck in a local minimum at {place}, {left:.1f} m from the goal: it goes to and fro there",
+    "stuck in a local minimum at {place}, {left:.1f} m from the goal: it goes back and forth there",
     "flies into an obstacle at {place}, {left:.1f} m from the goal: the push is too weak or the step too long",
     "flies where it may not at {place}, {left:.1f} m from the goal: zones and limits of height don't push",
     "gave up after {steps} steps at {place}, {left:.1f} m from the goal",
