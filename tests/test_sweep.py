@@ -240,22 +240,21 @@ def test_a_function_that_cannot_travel_is_refused_with_the_way_out(quiet, way):
 
 @pytest.mark.parametrize("way", ["loky", "multiprocessing"])
 def test_a_case_that_cannot_travel_is_named(quiet, way):
-    cases = [{"x": x, "file": None} for x in range(12)]
-    with open(__file__) as file, joblib.parallel_config(**WAYS[way]):
-        cases[9]["file"] = file
-        with pytest.raises(UnpicklableError, match=r"case 9 \(x=9, file=.*can't be sent to other processes") as refused:
-            sweep(lambda x, file: x, cases, **quiet)
+    cases = [{"x": x, "lock": None if x < 9 else threading.Lock()} for x in range(12)]
+    with joblib.parallel_config(**WAYS[way]):
+        with pytest.raises(UnpicklableError, match=r"case 9 \(x=9, lock=.*can't be sent to other processes") as refused:
+            sweep(lambda x, lock: x, cases, **quiet)
         assert isinstance(refused.value, pickle.PicklingError)
-        assert sweep(lambda x, file: x, cases, jobs=1, **quiet) == list(range(12))
+    assert sweep(lambda x, lock: x, cases, jobs=1, **quiet) == list(range(12))
 
 
 @pytest.mark.parametrize("way", ["loky", "multiprocessing"])
 def test_a_result_that_cannot_travel_costs_that_case(quiet, way):
-    def opener(x):
-        return open(__file__) if x == 5 else x
+    def locked(x):
+        return threading.Lock() if x == 5 else x
 
     with joblib.parallel_config(**WAYS[way]), pytest.warns(RuntimeWarning, match="1 of 12 cases failed"):
-        results = sweep(opener, CASES, **quiet)
+        results = sweep(locked, CASES, **quiet)
     assert "can't be sent back" in str(results[5].exception)
     assert results[:5] + results[6:] == [0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 11]
 

@@ -115,7 +115,8 @@ def test_values_come_back_to_the_last_bit(value):
     [
         -0.0, 5e-324, math.pi, 10**400, "\ud800\x00\n", {"!array": 1}, {1: 2, "1": 3}, {(1, 2): None}, np.float32(0.1),
         np.longdouble(1) / 3, np.int8(-3), np.bool_(True), np.datetime64("2024-01-02"), np.complex64(1j), {1, 2},
-        Pair(1, [2]), Pair(Pair(1, 2), ()), Thing(0.1, (np.float64(2),)), 1 + 0j, complex(-0.0, 3), [], {}, (), b"", np.array(3.0),
+        Pair(1, [2]), Pair(Pair(1, 2), ()), Thing(0.1, (np.float64(2),)), 1 + 0j, complex(-0.0, 3), [], {}, (),
+        b"", np.array(3.0),
     ],
     ids=repr,
 )  # fmt: skip
@@ -178,7 +179,7 @@ def test_a_thing_with_more_than_its_fields_is_refused(rows):
     loop = []
     loop.append(loop)
     with pytest.raises(ValueError, match="without end"):
-        run(rows, function=give_of(loop), cases=[{"x": 50}])
+        run(rows, function=give_of(loop))
 
 
 @pytest.mark.parametrize("row", [
@@ -528,9 +529,10 @@ def plain_of(k):
 DIFFERENT = [
     1, 1.0, True, "1", b"1", None, -0.0, 0.0, (1,), [1], {1}, {"a": 1}, {"a": 2}, {"b": 1}, np.array([1]),
     np.array([1.0]), np.array([[1]]), np.int64(1), Thing(1.0), Thing(2.0), Pair(1, 2), (1, 2), count, other,
-    functools.partial(count, 1), functools.partial(count, 2), functools.partial(other, 1), made_of(1), made_of(2), plain_of(1), plain_of(2), Thing,
-    np.random.default_rng(1), np.random.default_rng(2), *np.random.default_rng(1).spawn(2), "a".upper, "b".upper,
-    math.sin, Route([(0, 0, 1), (1, 1, 1)]), Route([(0, 0, 1), (1, 1, 2)]),
+    functools.partial(count, 1), functools.partial(count, 2), functools.partial(other, 1), made_of(1), made_of(2),
+    plain_of(1), plain_of(2), Thing, np.random.default_rng(1), np.random.default_rng(2),
+    *np.random.default_rng(1).spawn(2), "a".upper, "b".upper, math.sin, Route([(0, 0, 1), (1, 1, 1)]),
+    Route([(0, 0, 1), (1, 1, 2)]),
 ]  # fmt: skip
 
 

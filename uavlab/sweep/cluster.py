@@ -62,15 +62,19 @@ def on_dask(
                     else:
                         alone += batch  # it may have been another one on the same worker
                     continue
-                if took < LEAST:
-                    size = max(size, 2 * len(batch))
-                elif took > MOST:
-                    size = max(len(batch) // 2, 1)
+                size = next_size(size, len(batch), took)
                 for number, content in zip(batch, contents, strict=True):
                     yield number, opened(content)
     finally:
         client.cancel(list(batches))
         losses += gone(client, keys)
+
+
+def next_size(size: int, had: int, took: float) -> int:
+    """How many cases the next batch has, after one that took some time [s]."""
+    if took < LEAST:
+        return max(size, 2 * had)
+    return max(had // 2, 1) if took > MOST else size
 
 
 def all_unpacked(contents: list[bytes]) -> tuple[list[bytes], float]:

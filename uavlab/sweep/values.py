@@ -179,7 +179,9 @@ def parts(value: Any, seen: dict[int, tuple[Any, str]]) -> str:
         return f"{parts(value.bit_generator.state, seen)} {sequence.n_children_spawned} {sequence!r}"
     if isinstance(value, partial):
         return " ".join(fingerprint(part, seen) for part in (value.func, value.args, value.keywords))
-    if isinstance(value, types.MethodType):
+    if isinstance(value, types.MethodType | types.BuiltinMethodType) and not isinstance(
+        value.__self__, types.ModuleType
+    ):
         return f"{fingerprint(value.__self__, seen)} {value.__name__}"
     if isinstance(value, type | types.FunctionType | types.BuiltinFunctionType) or hasattr(value, "__wrapped__"):
         name, held = name_of(value), [cell.cell_contents for cell in getattr(value, "__closure__", None) or ()]
