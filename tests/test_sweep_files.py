@@ -332,6 +332,17 @@ def test_failed_cases_are_in_the_file_and_run_again(rows):
     assert alone.read_bytes() == rows.read_bytes()
 
 
+def test_of_two_rows_of_a_case_the_later_holds(rows):
+    run(rows)
+    content = rows.read_bytes()
+    with rows.open("a") as file:
+        file.write('{"case":3,"failed":"ValueError: no"}\n{"case":4,"result":7}\n')
+    CALLS.clear()
+    assert run(rows)[3:5] == [3 * 0.1, 7]
+    assert CALLS == [3]
+    assert rows.read_bytes() == content.replace(b'{"case":4,"result":0.4}', b'{"case":4,"result":7}')
+
+
 def test_an_error_says_what_is_kept(rows):
     BROKEN.add(4)
     with pytest.raises(ValueError, match="no") as raised:

@@ -164,8 +164,7 @@ class Rows(NoRows):
                 break
             expected += size
         else:
-            if expected == self.end:
-                return
+            return
         try:
             with written_whole(self.path) as part, self.path.open("rb") as source, part.open("wb") as target:
                 target.write(self.header)

@@ -66,7 +66,7 @@ def described_array(value: Any) -> dict[str, Any]:
     if value.dtype.hasobject:
         raise TypeError("an array of Python objects")
     content = io.BytesIO()
-    np.save(content, np.asarray(value, order="C"), allow_pickle=False)  # one order: it may change on the way here
+    np.save(content, np.asarray(value), allow_pickle=False)
     text = base64.b64encode(content.getvalue()).decode()
     return {"!scalar" if isinstance(value, np.generic) else "!array": text}
 
