@@ -60,6 +60,7 @@ from things import (
     cityjson_file,
     condition_check,
     data,
+    fresh,
     geojson_file,
     grid,
     in_flight,
@@ -90,9 +91,9 @@ from uavlab.vehicle_sim import DataLink, process, simulated_vehicle
 
 PACKAGES = (
     "city", "exercises", "flight", "mavlink", "mission", "offsets", "optimizers", "planners", "plot", "prediction",
-    "risk", "scene", "spline", "vehicle_sim", "weather",
+    "risk", "scene", "spline", "sweep", "vehicle_sim", "weather",
 )  # fmt: skip
-MODULES = ("route", "vehicle", "power", "resilience", "statistics", "sweep")
+MODULES = ("route", "vehicle", "power", "resilience", "statistics")
 
 MADE_BY_THE_LIBRARY = {
     "city.Source", "exercises.Progress", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights",
@@ -101,6 +102,7 @@ MADE_BY_THE_LIBRARY = {
     "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "plot.Sliders",
     "plot.Style", "power.Power",
     "prediction.Dataset", "resilience.Change", "risk.Fall", "scene.Scene", "spline.Feasibility", "spline.Limit",
+    "sweep.Failure",
     "vehicle.DataSheet", "vehicle_sim.SimulatedVehicle", "weather.DrydenParameters", "weather.ReferenceWind",
     "weather.WeatherRecord",
 }  # fmt: skip
@@ -121,8 +123,8 @@ INSIDE = {
     "route.promises_of",  # of planners
     "statistics.likely_means",  # of `grouped_share_interval`
     "statistics.quantile",  # of `grouped_share_interval`
-    "sweep.called",  # of `sweep`
-    "sweep.refuse_shared_generators",  # of `sweep`
+    "sweep.UnpicklableError",  # raised, with its words
+    "sweep.WorkerLostError",  # raised, with its words
     "plot.SEQUENTIAL",  # a colour map of matplotlib
     "plot.draw_map",  # a step of figures
     "plot.finished",  # a step of figures
@@ -365,7 +367,7 @@ CALLS = {
     "flight.fly": lambda: flown(number=1),
     "flight.fly: in wind": lambda: flown(number=1, disturbance=BREEZE),
     "flight.fly: in changing air": lambda: flown(number=1, disturbance=changing),
-    "flight.monte_carlo": lambda: flown(flights=3, every=0.5, jobs=1, progress=False),
+    "flight.monte_carlo": lambda: flown(flights=3, every=0.5, jobs=1, to=fresh("rows"), progress=False),
     "flight.offset_sigma": lambda: {
         "uav": DRONE, "wind": BREEZE, "ground_velocity": (1.0, 0.0, 0.0), "altitude": 32.0, "controller": ADVANCED,
     },
@@ -481,7 +483,7 @@ CALLS = {
     ),
     "planners.compare_planners": lambda: {
         "planners": {"ants": ants}, "maps": [RISK], "seeds": (1, 2), "budget": 10, "start": START, "goal": GOAL,
-        "refinement": 0.0, "jobs": 1, "progress": False,
+        "refinement": 0.0, "jobs": 1, "to": fresh("rows"), "progress": False,
     },
     "planners.flight_conditions": lambda: {
         "load": "light", "disturbance": MILD, "uav": DRONE, "reading": "table", "clock": 0.5,
@@ -875,7 +877,8 @@ CALLS = {
     "statistics.share_over_maps": lambda: {"values": PLAN[:3, :4]},
     # sweep
     "sweep.sweep": lambda: {
-        "function": level, "cases": [{"x": 1.0}, {"x": 2.0}], "jobs": 1, "progress": False, "unit": "case",
+        "function": level, "cases": [{"x": 1.0}, {"x": 2.0}], "jobs": 1, "on_error": "record",
+        "to": fresh("rows"), "progress": False, "unit": "case",
     },
 }  # fmt: skip
 

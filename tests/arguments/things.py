@@ -7,6 +7,7 @@ import time
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 import pandas
@@ -202,6 +203,11 @@ def model_file():
 
 def out(name):
     return Path(FOLDER.name) / name
+
+
+def fresh(name):
+    """A file that isn't there yet, for what goes on with one that is."""
+    return out(f"{uuid4().hex}.{name}")
 
 
 def grid():

@@ -385,7 +385,7 @@ def matrix(uav: UAV, routes: dict[str, Route | Curve], seeds: int, jobs: int) ->
                         for number, route in enumerate(routes.values())
                         for seed in (range(number * seeds, (number + 1) * seeds) if wind else [0])
                     ]
-                    errors = np.array(sweep(compare, cases, jobs=jobs, progress=False))
+                    errors = np.array(sweep(compare, cases, jobs=jobs, on_error="raise", progress=False))
                     tumbled = np.isnan(errors[:, 0, 0])
                     kept, centred = factor(errors[~tumbled, 0]), factor(errors[~tumbled, 1])
                     row = [body, gains.name, kind, str(len(cases)), str(tumbled.sum()), *kept, *centred[2:]]
@@ -427,7 +427,9 @@ def reasons(uav: UAV, route: Route | Curve, seeds: int, jobs: int, kind: str = "
         "trimmed": True,
     }
     cases = [{**common, **change, "seed": seed} for change in changes.values() for seed in range(seeds)]
-    errors = np.array(sweep(compare, cases, jobs=jobs, progress=False)).reshape(len(changes), seeds, 2, 2)
+    errors = np.array(sweep(compare, cases, jobs=jobs, on_error="raise", progress=False)).reshape(
+        len(changes), seeds, 2, 2
+    )
     rows = []
     for name, each in zip(changes, errors, strict=True):
         kept = each[np.isfinite(each[:, 0, 0])]
