@@ -286,10 +286,9 @@ def growth_lines(grown: Growth) -> Iterator[str]:
     times, nodes = (exponent(grown.voxels, cost) for cost in (grown.seconds, grown.expanded))
     yield (
         f"Time grows as voxels^b with b = {times[0]:.2f} [{times[1]:.2f}, {times[2]:.2f}], expanded voxels with b = "
-        f"{nodes[0]:.2f} [{nodes[1]:.2f}, {nodes[2]:.2f}]. (1 is the whole volume, 1/3 a line through it.) A copy of a "
-        f"large array reads and writes {memory / 1e9:.1f} GB in a second here. An expansion looks at {LINES} lines of 64 "
-        "bytes of the cache. GB/s counts them as if each came from memory: the most that it can have given, not what it "
-        "has."
+        f"{nodes[0]:.2f} [{nodes[1]:.2f}, {nodes[2]:.2f}]. (1 is the whole volume, 1/3 a line through it.) A copy "
+        f"of a large array reads and writes {memory / 1e9:.1f} GB in a second here. An expansion looks at {LINES} "
+        "lines of 64 bytes of the cache. GB/s counts them as if each came from memory: the most that it can have given."
     )
 
 
