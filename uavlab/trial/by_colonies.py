@@ -14,8 +14,8 @@ from uavlab.trial.by_campuses import LENGTHS, RISKS
 from uavlab.trial.judging import Measured
 from uavlab.trial.measures import percent, share_of_maps, statistic_of, wins
 
-COLONY: dict[str, Any] = {"alpha": 0.5, "beta": 80.0, "gamma": 0.0, "evaporation": 0.8, "min_pheromone": 0.0, "all_lay": True,
-          "deposit": 100.0}  # fmt: skip
+COLONY: dict[str, Any] = {"alpha": 0.5, "beta": 80.0, "gamma": 0.0, "evaporation": 0.8, "min_pheromone": 0.0}
+COLONY |= {"all_lay": True, "deposit": 100.0}
 """RISK-ACO Table 3, 50 generations of 10 ants."""
 SEEDS = (0, 1)
 

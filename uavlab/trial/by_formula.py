@@ -114,8 +114,10 @@ def falls(size: int, seed: int) -> dict[str, Measured]:
 
 def voxel_sums(size: int, seed: int) -> dict[str, Measured]:
     """The sum over the voxels of a diagonal that is shifted by a millimetre, over that of the diagonal."""
-    even = RiskMap(City(np.zeros((10, 10, 10), dtype=bool), cell=5.0), 0.03, shelter=0.5)
-    routes = [Route([(2.5 + shift, 2.5, 27.5), (47.5 + shift, 47.5, 27.5)]) for shift in (0.001, 0.0)]
+    city, ground = City(np.zeros((10, 10, 10), dtype=bool), cell=5.0), np.ones((10, 10))
+    even = RiskMap(city, 0.03 * ground, 0.5 * ground)
+    diagonal = np.array([(2.5, 2.5, 27.5), (47.5, 47.5, 27.5)])
+    routes = [Route(diagonal + (shift, 0.0, 0.0)) for shift in (0.001, 0.0)]
     shifted, unshifted = (even.cell_sum(route) for route in routes)
     return {"shifted": exact(shifted / unshifted, "a diagonal of 10 voxels, shifted by 1 mm")}
 
@@ -131,18 +133,17 @@ def splines(size: int, seed: int) -> dict[str, Measured]:
     at, knots = np.linspace(3, 7, 401), np.arange(11.0)
     inner = basis_functions(at, knots)[101:200]
     degree = next(n for n in range(6) if np.abs(np.diff(inner, n + 1, axis=0)).max() < 1e-12)
-    ends = [(np.ones(4), np.eye(4)[3]), ((3, 2, 1, 0), np.eye(4)[2]), ((6, 2, 0, 0), 2 * np.eye(4)[1])]
-    ends += [((6, 0, 0, 0), 6 * np.eye(4)[0])]  # the third derivative
-    jumps = [
-        np.abs(np.append(end @ PRINTED_MATRIX, 0) - np.append(0, begin @ PRINTED_MATRIX)).max() for end, begin in ends
-    ]
+    begins = np.diag([1.0, 1.0, 2.0, 6.0])[:, ::-1]  # powers of t and their derivatives, at t = 0 …
+    ends = np.array([(1, 1, 1, 1), (3, 2, 1, 0), (6, 2, 0, 0), (6, 0, 0, 0)])  # … and at t = 1
+    before, after = np.pad(ends @ PRINTED_MATRIX, ((0, 0), (0, 1))), np.pad(begins @ PRINTED_MATRIX, ((0, 0), (1, 0)))
+    jumps = np.abs(before - after).max(axis=1)  # of the curve, its slope, its second and third derivative
     row = np.column_stack([np.arange(11.0), np.zeros(11)])
     moved = np.abs(cubic_bspline(row + 7.0 * np.eye(11)[:, [5]], 40) - cubic_bspline(row, 40)).any(axis=1)
     segments = sum(moved[40 * n : 40 * n + 41].any() for n in range(10))
     return {
         "at knots": exact(basis_functions(at[::100], knots, as_printed=True).sum(axis=1).mean(), "5 knots"),
         "degree": exact(degree, "step 3 of the recursion"),
-        "continuous": exact(next(n for n, jump in enumerate(jumps) if jump > 1e-9) - 1, "at the joints"),
+        "continuous": exact((jumps > 1e-9).argmax() - 1, "at the joints"),
         "segments": exact(segments, "of 10 segments"),
     }
 
@@ -159,7 +160,7 @@ def antennae(size: int, seed: int) -> dict[str, Measured]:
     left, right = x + d * unit[0], x - d * unit[0]  # Eq. 18
     return {
         "corners": Measured(share.value / even, share.low / even, share.high / even, f"{size} directions"),
-        "length": exact(np.linalg.norm(left - right) / d),
+        "length": exact(float(np.linalg.norm(left - right)) / d),
     }
 
 

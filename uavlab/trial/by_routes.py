@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from uavlab.vehicle import LIGHT_QUADROTOR
 
 NOTCH, MIDDLE = (90.0, 18.0, 30.0), (50.0, 44.0, 30.0)
 """Start and goal of REPARE's Fig. 12, read off the figure [m]."""
-FIELDS = {
+FIELDS: dict[str, dict[str, Any]] = {
     "lattice, weak": {"moves": "lattice", "push": 5.0, "reach": 5.0},
     "lattice, medium": {"moves": "lattice", "obstacles": "surface", "push": 200.0, "reach": 8.0},
     "continuous, weak": {"moves": "continuous", "push": 5.0, "reach": 5.0},
@@ -82,7 +83,8 @@ def notch(size: int, seed: int) -> dict[str, Measured]:
                     (2, 3.5, 5, 8, 12))  # fmt: skip
     chosen = list(kinds)[:: 200 // size]
     names = ("moves", "attraction", "obstacles", "push", "reach")
-    ends = [potential_field(papers_city(), NOTCH, MIDDLE, **dict(zip(names, kind, strict=True))) for kind in chosen]
+    fields: list[dict[str, Any]] = [dict(zip(names, kind, strict=True)) for kind in chosen]
+    ends = [potential_field(papers_city(), NOTCH, MIDDLE, **field) for field in fields]
     stuck = ["local minimum" in route.reason for route in ends]
     out = astar(papers_city(), NOTCH, MIDDLE)
     return {
@@ -112,14 +114,14 @@ def estimates(size: int, seed: int) -> dict[str, Measured]:
     city = papers_city()
     pairs = city.random_pairs(100, seed, apart=40, min_clearance=3.5)[:size]
     both = [[astar(city, *pair, heuristic=h).length for pair in pairs] for h in ("octile", "euclidean")]
-    return {"shortest": percent(np.isclose(*both, rtol=0, atol=1e-6), f"{size} pairs")}
+    return {"shortest": percent(np.isclose(both[0], both[1], rtol=0, atol=1e-6), f"{size} pairs")}
 
 
 def there_and_back(size: int, seed: int) -> dict[str, Measured]:
     """The printed cost, with ring and straight distance: on how many pairs [%] the lengths there and back differ."""
     city = papers_city()
     pairs = city.random_pairs(100, seed, apart=40, min_clearance=3.5)[:size]
-    printed = {"heuristic": "euclidean", "as_printed": True}
+    printed: dict[str, Any] = {"heuristic": "euclidean", "as_printed": True}
     inside, found = {}, {}
     for weight in (0.1, 0.5):
         price = penalty_zone(city, 3.5, penalty=weight, zone="ring")

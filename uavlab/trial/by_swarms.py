@@ -17,14 +17,14 @@ from uavlab.trial.measures import percent, statistic_of
 SWARM = partial(waypoint_swarm, refinement=0.0)
 PRINTED = partial(SWARM, as_printed=True)
 EVALUATIONS = 4000
+ONE_RUN: dict[str, Any] = {"budget": EVALUATIONS, "seeds": [0], "progress": False}
 ITERATIONS_200 = 200 + 20 + 199 * 80
 """Evaluations in 200 iterations of 20 particles with antennae, and of the arcs that it begins with."""
 
 
 def run(planners: Mapping[str, Any], size: int, seed: int, **options: Any) -> Comparison:
     maps = [random_campus(seed + n) for n in range(size)]
-    options = {"budget": EVALUATIONS, "seeds": [0], "progress": False} | options
-    return compare_planners(planners, maps, **options)
+    return compare_planners(planners, maps, **(ONE_RUN | options))
 
 
 def as_printed(size: int, seed: int) -> dict[str, Measured]:
@@ -74,5 +74,5 @@ def functions(size: int, seed: int) -> dict[str, Measured]:
                 [method(f, [(-half, half)] * 6, EVALUATIONS, seed + n, as_printed=printed).value for n in range(size)]
                 for method in (pso_bas, pso)
             ]
-            found[f"{f.__name__}, {how}"] = percent(np.less(*least), f"{size} runs")
+            found[f"{f.__name__}, {how}"] = percent(np.less(*np.array(least)), f"{size} runs")
     return found

@@ -11,7 +11,7 @@ from uavlab.statistics import over_maps, share_interval, share_over_maps
 from uavlab.trial.judging import Measured
 
 
-def exact(value: float, sample: str = "computed") -> Measured:
+def exact(value: Any, sample: str = "computed") -> Measured:
     """A value that no chance is in."""
     return Measured(float(value), float(value), float(value), sample)
 
