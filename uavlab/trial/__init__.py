@@ -7,6 +7,7 @@ measured stands in the modules `by_formula`, `by_routes`, `by_flights`, `by_mode
 
 from uavlab.trial.judging import VERDICTS, Claim, Experiment, Finding, Measured, agree, verdict
 from uavlab.trial.running import CLAIMS, read_findings, run_trial, write_findings
+from uavlab.trial.shown import claims_table, verdict_figure
 
 __all__ = [
     "CLAIMS",
@@ -16,8 +17,10 @@ __all__ = [
     "Finding",
     "Measured",
     "agree",
+    "claims_table",
     "read_findings",
     "run_trial",
     "verdict",
+    "verdict_figure",
     "write_findings",
 ]

@@ -117,7 +117,7 @@ def voxel_sums(size: int, seed: int) -> dict[str, Measured]:
     city, ground = City(np.zeros((10, 10, 10), dtype=bool), cell=5.0), np.ones((10, 10))
     even = RiskMap(city, 0.03 * ground, 0.5 * ground)
     diagonal = np.array([(2.5, 2.5, 27.5), (47.5, 47.5, 27.5)])
-    routes = [Route(diagonal + (shift, 0.0, 0.0)) for shift in (0.001, 0.0)]
+    routes = [Route(diagonal + np.array([shift, 0.0, 0.0])) for shift in (0.001, 0.0)]
     shifted, unshifted = (even.cell_sum(route) for route in routes)
     return {"shifted": exact(shifted / unshifted, "a diagonal of 10 voxels, shifted by 1 mm")}
 

@@ -9,7 +9,7 @@ import numpy as np
 from uavlab.prediction import FEATURES, median_offsets, offset_class
 from uavlab.requirements import require
 from uavlab.trial.judging import Measured
-from uavlab.trial.measures import statistic_of
+from uavlab.trial.measures import fewer, statistic_of
 from uavlab.vehicle import LIGHT_QUADROTOR
 from uavlab.weather import greensboro_weather
 
@@ -46,8 +46,8 @@ def predictions(size: int, seed: int) -> dict[str, Measured]:
         safe.append(said >= classes[test])
     found = {name: of_one_split(100.0 * np.array(hits)) for name, hits in right.items()}
     for other in ("GaussianNB", "Ridge"):
-        ahead = np.array(right["XGBClassifier"], dtype=float) - np.array(right[other])
-        found[f"ahead of {other}"] = of_one_split(100.0 * ahead)
+        ours, theirs = (np.array(right[name]) for name in ("XGBClassifier", other))
+        found[f"ahead of {other}"] = fewer(theirs[0], ours[0], f"{ours.shape[1]} flights of the first split")
     return found | {"safe": of_one_split(100.0 * np.array(safe))}
 
 
