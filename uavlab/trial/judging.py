@@ -173,7 +173,7 @@ class Claim:
         checks.flag("at_least", self.at_least)
         checks.flag("fair", self.fair)
         if self.line is not None:
-            object.__setattr__(self, "line", checks.number("line", self.line))
+            object.__setattr__(self, "line", checks.number("line", self.line, checks.finite))
         if self.printed and not is_number(self.printed):
             raise ValueError(f"printed must be a number as the paper prints it, such as '0.952', got {self.printed!r}")
         if self.experiment is not None:

@@ -158,8 +158,13 @@ RISK_ACO = [
     ),
     ant(
         item="Eqs 1, 2, J0: threat", chapter="09", says="the baseline keeps away from buildings",
-        why="f1 isn't given, and it decides what the baseline is.",
+        why="The constant f1 isn't given, and it decides what the baseline is.",
     ),
+    ant(
+        item="Eqs 4 to 6: deaths", chapter="08", says="failures, people in the area, chance to die",
+        why="Definitions; they are used as they are.",
+    ),
+    *model_of_risk("RISK-ACO"),
     ant(
         item="Eqs 11 to 13: height", chapter="10", line=50.0, unit="% of runs",
         says="height in the choice improves the search", why="It draws the ants to the goal's level.",
@@ -168,6 +173,11 @@ RISK_ACO = [
     ant(
         item="Section 3.2: turns", chapter="10", printed="100", line=50.0, unit="% of routes",
         says="no turn exceeds π/3", why="Such moves are closed to an ant.", experiment=TABLE_5, of="turns",
+    ),
+    ant(
+        item="Eqs 14 to 16: choice and update", chapter="10",
+        says="ants choose by scent and distance; short ways smell",
+        why="Definitions: they are used as they are, and the risk isn't in them.",
     ),
     ant(
         item="Eq. 17, Table 3: limits", chapter="10", line=50.0, unit="% of runs",
@@ -250,7 +260,7 @@ PSO_BAS = [
         of="length",
     ),
     bas(
-        item="Eqs 20, 21: first lengths", chapter="11", says="antennae and step shrink",
+        item="Eqs 19 to 21: steps", chapter="11", says="antennae and step shrink",
         why="The first lengths aren't given.",
     ),
     *(
@@ -292,8 +302,8 @@ PSO_BAS = [
     bas(
         item="Fig. 10: 55 iterations", chapter="11", printed="55", unit="iterations",
         says="the search is complete after 55 iterations",
-        why="It depends on the map and on what complete means: here, within 1 % of the end.", experiment=PRINTED,
-        of="iterations",
+        why="It depends on the map and on what complete means: here, within a hundredth of the end.",
+        experiment=PRINTED, of="iterations",
     ),
     *(
         bas(

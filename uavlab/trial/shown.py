@@ -19,8 +19,8 @@ LOOKS = {
 }  # fmt: skip
 """Shape and colour of a verdict."""
 SIGNS = {HOLDS: "●", PARTLY: "▲", NOT_SHOWN: "■", DOES_NOT: "▼", CANNOT: "◇"}
-HEAD = ("claim", "printed", "measured [95 % interval]", "quick, here", "verdict", "why", "chapter")
-LEAST, MOST = 0.02, 50.0
+HEAD = ("claim", "paper's number", "measured [95 % interval]", "quick, here", "verdict", "why", "chapter")
+LEAST, MOST = 0.1, 10.0
 """Ends of the figure's axis; what lies beyond is drawn at the end."""
 
 
@@ -89,9 +89,11 @@ def with_interval(finding: Finding, measured: Measured | None) -> str:
 
 
 def rounded(number: float, decimals: int) -> str:
-    """With three digits, or with so many after the point where these are more."""
-    size = int(np.floor(np.log10(abs(number)))) if number else 0
-    return f"{number:.{min(max(decimals, 2 - size, 0), 4)}f}"
+    """With three digits, or four where so many are printed; whole numbers without a point."""
+    if float(number).is_integer():
+        return f"{number:.0f}"
+    least = 2 - int(np.floor(np.log10(abs(number))))
+    return f"{number:.{max(least, min(decimals, least + 1), 0)}f}"
 
 
 def verdict_figure(findings: Sequence[Finding]) -> Figure:
@@ -138,13 +140,16 @@ def verdict_figure(findings: Sequence[Finding]) -> Figure:
             draw_row(axes, height, one)
         papers = " and ".join(dict.fromkeys(one.claim.paper for one in part))
         axes.set(xscale="log", xlim=(LEAST, MOST), ylim=(most - 0.4, -0.6), title=papers,
-                 xlabel="measured / printed number, or / line")  # fmt: skip
+                 xlabel="measured over the paper's number, or over the line")  # fmt: skip
+        axes.set_xticks([0.1, 0.2, 0.5, 1, 2, 5, 10], ["≤ 0.1", "0.2", "0.5", "1", "2", "5", "≥ 10"])
+        axes.minorticks_off()
         axes.axvline(1.0, color="0.4", linewidth=0.8)
         axes.set_yticks(range(len(part)), [plain(one.claim.item) for one in part], fontsize=7)
         axes.grid(visible=True, axis="x", alpha=0.4)
     for name, (marker, color) in LOOKS.items():
         if any(one.verdict == name for one in drawn):
             panels[0].plot([], [], marker, color=color, label=name)
+    panels[0].plot([], [], "o", color=GREY, markerfacecolor="white", label="hollow: over the line, no number is given")
     return with_legend(panels[0])
 
 
@@ -160,4 +165,5 @@ def draw_row(axes: Axes, height: int, finding: Finding) -> None:
         return
     value, low, high = np.clip(np.array(finding.measured[:3]) / reference(finding), LEAST, MOST)
     axes.plot([low, high], [height, height], "-", color=color, linewidth=1.6)
-    axes.plot(value, height, marker, color=color, markersize=5, clip_on=False)
+    filled = color if finding.claim.number else "white"
+    axes.plot(value, height, marker, color=color, markerfacecolor=filled, markersize=5, clip_on=False)
