@@ -29,6 +29,7 @@ PACKAGES = (
     "risk",
     "scene",
     "spline",
+    "trial",
     "vehicle_sim",
     "weather",
 )

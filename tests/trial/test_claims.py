@@ -70,7 +70,7 @@ def claim(**settings):
     ("settings", "interval", "expected"),
     [
         ({"printed": "0.952", "line": 1.0, "side": "below"}, (0.94, 0.96), "holds"),
-        ({"printed": "0.952", "line": 1.0, "side": "below"}, (0.95249, 0.96), "holds"),  # as far as its digits go
+        ({"printed": "0.952", "line": 1.0, "side": "below"}, (0.9525, 0.96), "holds"),  # as far as its digits go
         ({"printed": "0.952", "line": 1.0, "side": "below"}, (0.953, 0.96), "partly"),
         ({"printed": "0.952", "line": 1.0, "side": "below"}, (0.90, 0.951), "partly"),  # and shorter still
         ({"printed": "0.952", "line": 1.0, "side": "below"}, (0.94, 1.0), "not shown"),  # the line is in it

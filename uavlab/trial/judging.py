@@ -307,7 +307,8 @@ def reaches(claim: Claim, low: float, high: float) -> bool:
     """Whether an interval has the printed number in it, or outdoes a promise; without a number it does."""
     if claim.number is None:
         return True
-    least, most = claim.number - claim.rounding, claim.number + claim.rounding
+    half = claim.rounding * (1 + 1e-9)  # so that 0.9525 counts for 0.952, as it does on paper
+    least, most = claim.number - half, claim.number + half
     if claim.at_least and claim.line is not None:
         return high >= least if claim.side == "above" else low <= most
     return low <= most and high >= least

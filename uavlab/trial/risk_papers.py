@@ -76,8 +76,8 @@ def model_of_risk(paper: str) -> list[Claim]:
 
 
 def smoothing(paper: str) -> list[Claim]:
-    """What both papers say of B-splines and of what can be flown."""
-    at, claim, other = EQUATIONS[paper], partial(Claim, paper=paper), {"RISK-ACO": "60", "PSO-BAS": "45"}[paper]
+    """What both papers say of B-splines."""
+    at, claim = EQUATIONS[paper], partial(Claim, paper=paper)
     return [
         claim(
             item=f"{at['degree']}: degree", chapter="12", printed="2", unit="of step 3",
@@ -98,6 +98,13 @@ def smoothing(paper: str) -> list[Claim]:
             says="a moved point doesn't change the whole curve", why="Each segment has four points.",
             experiment=SPLINES, of="segments",
         ),
+    ]  # fmt: skip
+
+
+def flyable(paper: str) -> list[Claim]:
+    """What both papers say of curves that can be flown."""
+    at, claim, other = EQUATIONS[paper], partial(Claim, paper=paper), {"RISK-ACO": "60", "PSO-BAS": "45"}[paper]
+    return [
         *(
             claim(
                 item=f"{at['curvature']}: curvature below 1, {reading}", chapter="12", printed="100", line=50.0,
@@ -194,6 +201,7 @@ RISK_ACO = [
         why="It is the number of ants, which one chooses.",
     ),
     *smoothing("RISK-ACO"),
+    *flyable("RISK-ACO"),
     ant(
         item="Figs 7, 8: the campus", chapter="08", says="map and planned route", why=NOT_IN_TEXT,
     ),
@@ -275,6 +283,7 @@ PSO_BAS = [
         for name in ("sphere", "rosenbrock", "rastrigin")
     ),
     *smoothing("PSO-BAS"),
+    *flyable("PSO-BAS"),
     bas(
         item="Eq. 23: intervals", chapter="12", line=1.0, side="equal", unit="sum of the weights",
         says="each interval has both its ends in it", why="At a knot two of them count.", experiment=SPLINES,

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from uavlab import checks, plot
 from uavlab.plot.panels import GREY, with_legend
 from uavlab.plot.style import plain
-from uavlab.trial.judging import CANNOT, DOES_NOT, HOLDS, NOT_SHOWN, PARTLY, Finding, Measured
+from uavlab.trial.judging import CANNOT, DOES_NOT, HOLDS, NOT_SHOWN, PARTLY, Claim, Finding, Measured
 
 LOOKS = {
     HOLDS: ("o", plot.BLUE), PARTLY: ("^", plot.GREEN), NOT_SHOWN: ("s", plot.YELLOW), DOES_NOT: ("v", plot.ORANGE),
@@ -19,7 +19,8 @@ LOOKS = {
 }  # fmt: skip
 """Shape and colour of a verdict."""
 SIGNS = {HOLDS: "●", PARTLY: "▲", NOT_SHOWN: "■", DOES_NOT: "▼", CANNOT: "◇"}
-HEAD = ("claim", "paper's number", "measured [95 % interval]", "quick, here", "verdict", "why", "chapter")
+SIDE_SIGNS = {"above": ">", "below": "<", "equal": "≈"}
+HEAD = ("claim", "paper's number", "line", "measured [95 % interval]", "quick, here", "verdict", "why", "chapter")
 LEAST, MOST = 0.1, 10.0
 """Ends of the figure's axis; what lies beyond is drawn at the end."""
 
@@ -67,11 +68,18 @@ def claims_table(
         claim, chapter = one.claim, one.claim.chapter
         sample = f" {claim.unit}; {one.measured.sample}" if one.measured else ""
         rows.append((
-            f"**{claim.item}**: {claim.says}", claim.printed, with_interval(one, one.measured) + sample,
+            f"**{claim.item}**: {claim.says}", claim.printed, line_of(claim), with_interval(one, one.measured) + sample,
             with_interval(one, beside.get(one.key)), f"{SIGNS[one.verdict]} {one.verdict}", claim.why,
             f"[{chapter}]({files[chapter]})" if chapter in files else chapter,
         ))  # fmt: skip
     return "\n".join("| " + " | ".join(map(escaped, row)) + " |" for row in rows)
+
+
+def line_of(claim: Claim) -> str:
+    """The line, and on which side of it the claim lies."""
+    if claim.line is None or claim.experiment is None:
+        return ""
+    return f"{SIDE_SIGNS[claim.side]} {claim.line:g}"
 
 
 def escaped(cell: str) -> str:
