@@ -6,7 +6,8 @@ out (they come back with Run All, a still picture stands for them). Exercises ar
 taken out. `--check` changes nothing and fails if anything is stale. `--html` runs notebooks and writes them to
 `notebooks/html/` as pages that work offline, each in one file with its scenes, sliders and equations. `--page FILE`
 writes a project that a student has run and saved as such a page, beside it. `--nbgrader FOLDER` makes assignments of
-the exercises. The tables for teachers in `notebooks/README.md` are kept up to date, too.
+the exercises. `--full` measures all claims of the papers anew, with full samples, and writes them to
+`notebooks/trial.csv`; chapter 15 reads it. The tables for teachers in `notebooks/README.md` are kept up to date, too.
 """
 
 import argparse
@@ -24,9 +25,11 @@ from nbclient import NotebookClient
 from nbformat import NotebookNode
 
 from uavlab.plot.pictures import quantised
+from uavlab.trial import read_findings, run_trial, write_findings
 
 HERE = Path(__file__).resolve().parent
 SOURCES = HERE / "src"
+TRIAL = HERE / "trial.csv"
 SOLUTION = re.compile(r"^([ \t]*)### BEGIN SOLUTION.*?### END SOLUTION[ \t]*$", re.DOTALL | re.MULTILINE)
 ANSWER = re.compile(r"^(\w+) = ", re.MULTILINE)
 SECONDS_PER_CELL = 300
@@ -44,7 +47,12 @@ def main() -> int:
         help="write exercises, as in 05 06, to FOLDER/source for nbgrader; default: all",
     )
     command.add_argument("--page", type=Path, metavar="FILE", help="a saved notebook as a page to hand in, beside it")
+    command.add_argument("--full", action="store_true", help="measure all claims of the papers anew, to trial.csv")
     options = command.parse_args()
+    if options.full:
+        write_findings(run_trial(full=True, jobs=-1), TRIAL)
+        print(TRIAL)
+        return 0
     if options.page:
         return page_of(options.page)
     if options.nbgrader:
@@ -75,10 +83,12 @@ def main() -> int:
             print(f"stale: {target(source).relative_to(HERE.parent)}: {reason}; run python notebooks/build.py")
         for orphan in orphans:
             print(f"no source: {orphan.relative_to(HERE.parent)}")
+        if old := trial_staleness():
+            print(f"stale: notebooks/trial.csv: {old}")
         if tables != guide:
             print("stale: notebooks/README.md: its tables differ from the chapters; run python notebooks/build.py")
         print(f"{len(sources)} notebooks, {len(stale)} stale, {len(orphans)} without a source")
-        return 1 if stale or orphans or tables != guide else 0
+        return 1 if stale or orphans or old or tables != guide else 0
     for source in sources if options.all or options.names else stale:
         print(f"running {source.relative_to(SOURCES)}", flush=True)
         write(executed(jupytext.read(source)), target(source))
@@ -159,6 +169,15 @@ def staleness(source: Path) -> str:
         exercises = exercise_target(source)
         if not exercises.exists() or exercises.read_text(encoding="utf-8") != text_of(exercise(source)):
             return "its exercise differs"
+    return ""
+
+
+def trial_staleness() -> str:
+    """Why the papers' claims have to be measured again; empty when they haven't."""
+    try:
+        read_findings(TRIAL)
+    except (OSError, ValueError) as problem:
+        return str(problem)
     return ""
 
 

@@ -30,6 +30,7 @@ PACKAGES = (
     "scene",
     "spline",
     "sweep",
+    "trial",
     "vehicle_sim",
     "weather",
 )

@@ -87,11 +87,14 @@ from uavlab.mavlink import connect, follow, go_home, land, start
 from uavlab.mission import FencePolygon, Item, Mission
 from uavlab.prediction import FEATURES, SETTINGS
 from uavlab.resilience import ADVANCED, BASIC, Controller
+from uavlab.trial import read_findings
 from uavlab.vehicle_sim import DataLink, process, simulated_vehicle
+
+ROOT = Path(__file__).parents[2]
 
 PACKAGES = (
     "city", "exercises", "flight", "mavlink", "mission", "offsets", "optimizers", "planners", "plot", "prediction",
-    "risk", "scene", "spline", "sweep", "vehicle_sim", "weather",
+    "risk", "scene", "spline", "sweep", "trial", "vehicle_sim", "weather",
 )  # fmt: skip
 MODULES = ("route", "vehicle", "power", "resilience", "statistics")
 
@@ -103,6 +106,7 @@ MADE_BY_THE_LIBRARY = {
     "plot.Style", "power.Power",
     "prediction.Dataset", "resilience.Change", "risk.Fall", "scene.Scene", "spline.Feasibility", "spline.Limit",
     "sweep.Failure",
+    "trial.Claim", "trial.Experiment", "trial.Finding", "trial.Finding.of", "trial.Measured",
     "vehicle.DataSheet", "vehicle_sim.SimulatedVehicle", "weather.DrydenParameters", "weather.ReferenceWind",
     "weather.WeatherRecord",
 }  # fmt: skip
@@ -880,7 +884,18 @@ CALLS = {
         "function": level, "cases": [{"x": 1.0}, {"x": 2.0}], "jobs": 1, "on_error": "record",
         "to": fresh("rows"), "progress": False, "unit": "case",
     },
+    # trial
+    "trial.verdict": lambda: {"claim": JUDGED.claim, "measured": JUDGED.measured},
+    "trial.agree": lambda: {"one": JUDGED, "other": JUDGED},
+    "trial.run_trial": lambda: {"claims": [JUDGED.claim], "full": False, "jobs": 1, "progress": False},
+    "trial.write_findings": lambda: {"findings": [JUDGED], "path": out("findings.csv")},
+    "trial.read_findings": lambda: {"path": ROOT / "notebooks" / "trial.csv"},
+    "trial.claims_table": lambda: {"findings": [JUDGED], "quick": [JUDGED], "links": {"01": "01.ipynb"}},
+    "trial.verdict_figure": lambda: {"findings": [JUDGED]},
 }  # fmt: skip
+
+
+JUDGED = next(one for one in read_findings(ROOT / "notebooks" / "trial.csv") if one.claim.of == "lift")
 
 
 def connected(**arguments):

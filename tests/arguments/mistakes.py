@@ -149,6 +149,7 @@ RIGHTFUL = {
     **{f"plot.{kind}.y_range": {"None inside"} for kind in ("diagram", "lines", "points")},  # ends by itself
     "plot.heat_map.contours": {"too short"},
     "plot.sliders.labels": {"a word inside"},  # is one
+    "trial.claims_table.links": {"a word inside"},  # is a file's name
     "plot.bars.values": {"NaN inside"},  # has no bar, such as the clearance of a route that doesn't arrive
 }
 """Mistakes that are none, by function and parameter."""
