@@ -67,10 +67,11 @@ def bounds_of(query: Query, by_length: Query, rest: np.ndarray, limits: np.ndarr
         return no_bounds(), expanded
     known = [measured(query, by_length, route) for route in (nodes, cheapest)]
     multipliers, rests = [0.0], [rest]
+    summed = query._replace(price=np.empty(np.broadcast_shapes(query.price.shape, by_length.price.shape)))
     steepest = 1e9 * query.price.max() / by_length.price.max()
     multiplier = float(np.clip((known[0][0] - known[1][0]) / (1e-6 * shortest), 0.0, steepest))
     while multiplier >= 0 and len(multipliers) <= MOST_MULTIPLIERS:
-        summed = query._replace(price=query.price + multiplier * by_length.price)
+        np.add(query.price, multiplier * by_length.price, out=summed.price)
         further, more = rest_of_cost(summed, query.source, open_list(query.blocked.size))
         route, _, most = solve_knowing(summed, further)
         expanded += more + most
