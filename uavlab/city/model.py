@@ -28,6 +28,7 @@ from uavlab.city.extent import (
     extent_and_ground,
     locked,
 )
+from uavlab.city.near import WIDEST, near_obstacles
 from uavlab.city.numbering import MOST_PAIRS, checked_index, codes_of, indices_of, pairs_apart, whole_numbers
 from uavlab.city.place import Place, place_of
 from uavlab.city.rasterise import bilinear, mark_ground, range_of_ground, rasterise, reaches_into, surface_below
@@ -592,7 +593,10 @@ class City:
         min_height, max_height = checked_heights(min_height, max_height)
         blocked = self.occupied
         if min_clearance > 0:
-            blocked = self.clearance < least_kept(min_clearance, self.cell)
+            if "clearance" in vars(self) or min_clearance > WIDEST * self.cell:
+                blocked = self.clearance < least_kept(min_clearance, self.cell)
+            else:
+                blocked = near_obstacles(self, min_clearance)
         if self.no_fly:
             blocked = blocked | self.in_no_fly
         if min_height > 0 or max_height < np.inf:
