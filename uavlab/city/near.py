@@ -61,10 +61,15 @@ def voxels_of(bits: np.ndarray, height: int) -> np.ndarray:
 @kept_for_city(1)
 def near_obstacles(city: City, min_clearance: float) -> np.ndarray:
     """Whether the clearance of each voxel (nx, ny, nz) is below `min_clearance` [m], to rounding, see `least_kept`."""
-    bits = bits_of(city.occupied)
+    return locked(near_voxels(city.occupied, reaches_of(min_clearance, city.cell, max(city.shape))))
+
+
+def near_voxels(occupied: np.ndarray, reaches: np.ndarray) -> np.ndarray:
+    """Which voxels (nx, ny, nz) are too near to occupied ones of them, by `reaches_of` the distance."""
+    bits = bits_of(occupied)
     near = np.zeros_like(bits)
-    widen_balls(bits, reaches_of(min_clearance, city.cell, max(city.shape)), near)
-    return locked(voxels_of(near, city.shape[2]))
+    widen_balls(bits, reaches, near)
+    return voxels_of(near, occupied.shape[2])
 
 
 @compiled

@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
-from uavlab.city import City
+from uavlab.city import City, LazyCity
+from uavlab.city.lazy import refuse
 from uavlab.compiled import compilable, compiled
 from uavlab.planners.grid import (
     BOXES,
@@ -56,6 +57,8 @@ def astar(
     ways, so the search begins where the price is higher: the estimate knows nothing of a dear goal, and would
     have to look everywhere else before it pays for the last metres.
 
+    On a lazy city, two searches from both ends find a route of the same cost; there it has no price and no record.
+
     Parameters
     ----------
     city : City
@@ -81,7 +84,8 @@ def astar(
     -------
     Route
         `cost`; `info["expanded"]`, the number of expansions, `info["elapsed"]` [s], `info["heuristic"]` and, with
-        `record`, `info["order"]`, the node codes as they were expanded. `reached` is False where no way exists.
+        `record`, `info["order"]`, the node codes as they were expanded. `reached` is False where no way exists, or on a
+        lazy city where none can be proven to be cheapest within memory; `reason` tells.
 
     Raises
     ------
@@ -90,7 +94,7 @@ def astar(
         no-fly zone, nearer to an obstacle than `min_clearance`, or above `max_height`. If both lie in one voxel. If
         `price` hasn't the city's shape, is negative or not finite. If `heuristic` is unknown. If `min_clearance` or
         `min_height` is negative or not finite. If `max_height` is not above `min_height`. If `as_printed` comes without
-        a `price`.
+        a `price`. If a `price` or `record` is asked for on a lazy city.
 
     See Also
     --------
@@ -119,7 +123,13 @@ def astar(
     if as_printed and price is None:
         raise ValueError("as_printed needs a price: without a penalty zone Eq. 13 is plain A*")
     airspace = Airspace(city, min_clearance, min_height, max_height)
+    if isinstance(city, LazyCity) and (price is not None or record):
+        refuse(city, "record" if price is None else "a price")
     ends = endpoints(airspace, start, goal)
+    if isinstance(city, LazyCity):
+        from uavlab.planners.both_ends import route_on_lazy
+
+        return timed(ends.added_to(route_on_lazy(airspace, ends.source, ends.target, heuristic)), began)
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
     route = cheapest_route(
         city,
