@@ -44,13 +44,16 @@ from uavlab.planners.question import Airspace
 from uavlab.route import Route
 
 FIRST_TURN = 20_000
-"""So many nodes a search expands before it is the other's turn; then three times as many, and so on."""
+"""So many nodes a search expands before it is the other's turn."""
 
 MOST_NODES = 1 << 24
 """Room for so many nodes has each search; both together then take about 0.9 GB."""
 
 MOST_BLOCKS = 8192
 """Room for so many blocks: 0.6 GB on a map of 120 voxels in height."""
+
+GROWTH = 3
+"""And so many times as many in the next turn."""
 
 PLANES = 8
 """So many planes are asked for an estimate: those that are highest at the begin."""
@@ -101,7 +104,7 @@ def route_on_lazy(airspace: Airspace, source: int, target: int, heuristic: str) 
         outcome = take_turn(question, back, forth, turn) or take_turn(question, forth, back, turn)
         if not outcome and back.full[0] and forth.full[0]:
             outcome = "full"
-        turn *= 3
+        turn *= GROWTH
     expanded = int(back.expanded[0] + forth.expanded[0])
     info = {"expanded": expanded, "heuristic": heuristic, "blocks": int(np.count_nonzero(blocks.number))}
     if outcome == "full":

@@ -21,6 +21,10 @@ from uavlab.planners.heap import pop, push
 BLOCK, BRICK = 64, 8
 """Edges of a block of columns and of a brick of nodes [voxels]."""
 
+BLOCK_BITS, BRICK_BITS = 6, 3
+IN_BLOCK, WITHIN = BLOCK - 1, BRICK - 1
+"""Powers of two, so that >> and & count: a division for each neighbour takes a third of the time of a search."""
+
 IN_BRICK = BRICK**3
 
 ARRIVED, EXHAUSTED, MISSING, FULL, SPENT, MET = range(6)
@@ -60,29 +64,35 @@ class Aim(NamedTuple):
 @compiled
 def node_at(tree, i, j, k):
     """The node of a voxel, in a new brick if need be."""
-    brick = tree.brick[i // BRICK, j // BRICK, k // BRICK]
+    a, b, c = i >> BRICK_BITS, j >> BRICK_BITS, k >> BRICK_BITS
+    brick = tree.brick[a, b, c]
     if brick == 0:
         tree.used[0] += 1
         brick = tree.used[0]
-        tree.brick[i // BRICK, j // BRICK, k // BRICK] = brick
-        tree.corner[brick, 0], tree.corner[brick, 1], tree.corner[brick, 2] = i // BRICK, j // BRICK, k // BRICK
-    return brick * IN_BRICK + (i % BRICK * BRICK + j % BRICK) * BRICK + k % BRICK
+        tree.brick[a, b, c] = brick
+        tree.corner[brick, 0], tree.corner[brick, 1], tree.corner[brick, 2] = a, b, c
+    return brick * IN_BRICK + place_in_brick(i, j, k)
+
+
+@compiled
+def place_in_brick(i, j, k):
+    return ((i & WITHIN) << 2 * BRICK_BITS) + ((j & WITHIN) << BRICK_BITS) + (k & WITHIN)
 
 
 @compiled
 def voxel_of(tree, node):
     """The voxel (i, j, k) of a node."""
-    brick, within = node // IN_BRICK, node % IN_BRICK
-    i = tree.corner[brick, 0] * BRICK + within // (BRICK * BRICK)
-    j = tree.corner[brick, 1] * BRICK + within // BRICK % BRICK
-    return i, j, tree.corner[brick, 2] * BRICK + within % BRICK
+    brick = node >> 3 * BRICK_BITS
+    i = (tree.corner[brick, 0] << BRICK_BITS) + (node >> 2 * BRICK_BITS & WITHIN)
+    j = (tree.corner[brick, 1] << BRICK_BITS) + (node >> BRICK_BITS & WITHIN)
+    return i, j, (tree.corner[brick, 2] << BRICK_BITS) + (node & WITHIN)
 
 
 @compiled
 def cost_at(tree, i, j, k):
     """What it costs to come to a voxel, as far as a search knows; infinite if it doesn't."""
-    brick = tree.brick[i // BRICK, j // BRICK, k // BRICK]
-    node = brick * IN_BRICK + (i % BRICK * BRICK + j % BRICK) * BRICK + k % BRICK
+    brick = tree.brick[i >> BRICK_BITS, j >> BRICK_BITS, k >> BRICK_BITS]
+    node = brick * IN_BRICK + place_in_brick(i, j, k)
     return tree.g[node] if brick > 0 and tree.parent[node] != UNSEEN else np.inf
 
 
@@ -100,12 +110,12 @@ def estimate(aim, i, j, k):
 def around_in(bits, a, b, k):
     """The word of 27 bits of the voxels around voxel k of column (a, b) of a block; see `blocked_around`."""
     word, bit = np.int64(0), 1
-    first, shift = k // 64, np.uint64(k % 64)
+    first, shift = k >> 6, np.uint64(k & 63)
     over = np.uint64(64) - shift
     for i in range(a, a + 3):
         for j in range(b, b + 3):
             three = bits[i, j, first] >> shift
-            if k % 64 > 61:
+            if (k & 63) > 61:
                 three |= bits[i, j, first + 1] << over
             word |= np.int64(three & np.uint64(7)) * bit
             bit <<= 3
@@ -133,9 +143,9 @@ def search_on(tree, waiting, blocks, aim, other, best, turn):
             return SPENT, expanded
         if tree.used[0] >= room:
             return FULL, expanded
-        number = blocks.number[i // BLOCK, j // BLOCK]
+        number = blocks.number[i >> BLOCK_BITS, j >> BLOCK_BITS]
         if number == 0:
-            blocks.missing[0], blocks.missing[1] = i // BLOCK, j // BLOCK
+            blocks.missing[0], blocks.missing[1] = i >> BLOCK_BITS, j >> BLOCK_BITS
             return MISSING, expanded
         pop(waiting)
         expanded += 1
@@ -143,7 +153,7 @@ def search_on(tree, waiting, blocks, aim, other, best, turn):
         whole = so_far + cost_at(other, i, j, k)
         if whole < best[0]:
             best[0], best[1], best[2], best[3] = whole, i, j, k
-        around = around_in(blocks.bits[number], i % BLOCK, j % BLOCK, k)
+        around = around_in(blocks.bits[number], i & IN_BLOCK, j & IN_BLOCK, k)
         for move in range(26):
             if around & BOXES[move]:
                 continue
