@@ -28,6 +28,7 @@ from things import (
     HOURS,
     HOUSE,
     JOINT,
+    LAZY,
     LINE,
     LOG,
     MILD,
@@ -99,6 +100,7 @@ PACKAGES = (
 MODULES = ("route", "vehicle", "power", "resilience", "statistics")
 
 MADE_BY_THE_LIBRARY = {
+    "city.LazyCity",
     "city.Source", "exercises.Progress", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights",
     "flight.Rate",
     "mavlink.CommandDeniedError", "mavlink.Link", "mavlink.MissionRejectedError", "mavlink.Telemetry", "mission.Check",
@@ -113,6 +115,9 @@ MADE_BY_THE_LIBRARY = {
 """Results: nobody else makes them, so that their making needs no checks. Their methods do, and who takes them."""
 
 INSIDE = {
+    "city.LazyCity.blocked_window",  # of planners
+    "city.LazyCity.buildings_over",  # of its own
+    "city.LazyCity.window",  # of its own
     "mavlink.Link.beat",  # of `Link.receive`
     "mavlink.Link.note",  # of its record
     "mavlink.Link.receive",  # a step of `upload`, `follow` and others
@@ -251,7 +256,7 @@ def site():
 
 
 def mapped(**more):
-    return {"cell": 1.0, "margin": 4.0, "voxels": "touched", "no_fly": [ZONE], **more}
+    return {"cell": 1.0, "margin": 4.0, "voxels": "touched", "no_fly": [ZONE], "lazy": False, **more}
 
 
 def routed(**more):
@@ -293,6 +298,12 @@ CALLS = {
     "city.City.from_buildings: by margin": lambda: mapped(
         buildings=[HOUSE], origin=None, size=None, name="town", reference=PLACE, source=SOURCE, terrain=0.5,
     ),
+    "city.LazyCity.part": lambda: {"self": LAZY, "around": WAY, "margin": 2.0},
+    "city.LazyCity.height_above_ground": lambda: {"self": LAZY, "points": WAY},
+    "city.LazyCity.is_free": lambda: {"self": LAZY, "points": WAY},
+    "city.LazyCity.distance": lambda: {"self": LAZY, "points": WAY, "exact_within": 2.0},
+    "city.LazyCity.segment_distance": lambda: {"self": LAZY, "start": WAY[:2], "end": WAY[1:], "at_most": 4.0},
+    "city.LazyCity.random_pairs": lambda: {"self": LAZY, "count": 2, "rng": 1, "apart": 5.0, "min_clearance": 0.5},
     "city.City.towards_wall": lambda: {"self": TOWN, "vector": (1.0, 0.5, 0.0)},
     "city.City.clearance_along": lambda: {"self": TOWN, "offset": (1.0, 0.5, 0.0), "at_most": 4.0},
     "city.City.height_above_ground": lambda: {"self": TOWN, "points": WAY},

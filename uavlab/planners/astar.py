@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
-from uavlab.city import City
+from uavlab.city import City, LazyCity
+from uavlab.city.lazy import refuse
 from uavlab.compiled import compilable, compiled
 from uavlab.planners.coarse import coarse_estimate, estimated, is_uneven
 from uavlab.planners.grid import (
@@ -58,6 +59,8 @@ def astar(
     ways, so the search begins where the price is higher: the estimate knows nothing of a dear goal, and would
     have to look everywhere else before it pays for the last metres.
 
+    On a lazy city, two searches from both ends find a route of the same cost; there it has no price and no record.
+
     Parameters
     ----------
     city : City
@@ -86,7 +89,8 @@ def astar(
     -------
     Route
         `cost`; `info["expanded"]`, the number of expansions, `info["elapsed"]` [s], `info["heuristic"]` and, with
-        `record`, `info["order"]`, the node codes as they were expanded. `reached` is False where no way exists.
+        `record`, `info["order"]`, the node codes as they were expanded. `reached` is False where no way exists, or on a
+        lazy city where none can be proven to be cheapest within memory; `reason` tells.
 
     Raises
     ------
@@ -95,7 +99,8 @@ def astar(
         no-fly zone, nearer to an obstacle than `min_clearance`, or above `max_height`. If both lie in one voxel. If
         `price` hasn't the city's shape, is negative or not finite. If `heuristic` is unknown, or "coarse" without a
         `price` or `as_printed`. If `min_clearance` or `min_height` is negative or not finite. If `max_height` is not
-        above `min_height`. If `as_printed` comes without a `price`.
+        above `min_height`. If `as_printed` comes without a `price`. If a `price` or `record` is asked for on a lazy
+        city.
 
     See Also
     --------
@@ -126,10 +131,16 @@ def astar(
     if heuristic == "coarse" and (as_printed or price is None):
         raise ValueError('heuristic="coarse" estimates what a way costs: give a price, and leave as_printed False')
     airspace = Airspace(city, min_clearance, min_height, max_height)
+    if isinstance(city, LazyCity) and (price is not None or record):
+        refuse(city, "record" if price is None else "a price")
     ends = endpoints(airspace, start, goal)
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
     if heuristic == "auto":
-        heuristic = "octile" if prices is None or as_printed or not is_uneven(prices, cheapest) else "coarse"
+        heuristic = "coarse" if prices is not None and not as_printed and is_uneven(prices, cheapest) else "octile"
+    if isinstance(city, LazyCity):
+        from uavlab.planners.both_ends import route_on_lazy
+
+        return timed(ends.added_to(route_on_lazy(airspace, ends.source, ends.target, heuristic)), began)
     route = cheapest_route(
         city,
         ends.source,

@@ -16,11 +16,14 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
-from uavlab.city import City
+from uavlab.city import City, LazyCity
 from uavlab.city.extent import locked
 from uavlab.compiled import compiled
 from uavlab.risk.model import high_enough
 from uavlab.route import PROMISES, Route
+
+NEARBY = 64
+"""So far [cells] around a start or a goal on a lazy city it is looked for what is in the way."""
 
 
 class Airspace(NamedTuple):
@@ -98,9 +101,13 @@ def endpoints(airspace: Airspace, start: npt.ArrayLike, goal: npt.ArrayLike) -> 
     """Where a way is to be looked for; `ValueError` if start or goal can't be flown from or to, or both are one."""
     city = airspace.city
     checks.instance("city", city, City)
-    blocked = airspace.blocked
-    source, takeoff = end_at(airspace, blocked, start, "start")
-    target, landing = end_at(airspace, blocked, goal, "goal")
+    if isinstance(city, LazyCity):
+        source, takeoff = end_nearby(airspace, city, start, "start")
+        target, landing = end_nearby(airspace, city, goal, "goal")
+    else:
+        blocked = airspace.blocked
+        source, takeoff = end_at(airspace, blocked, start, "start")
+        target, landing = end_at(airspace, blocked, goal, "goal")
     if (takeoff or (source,))[0] == (landing or (target,))[0]:
         raise ValueError(
             f"start {checks.show(start)} and goal {checks.show(goal)} lie in the same voxel: "
@@ -135,6 +142,25 @@ def end_at(airspace: Airspace, blocked: np.ndarray, point: npt.ArrayLike, argume
             return top, tuple(range(code, top))
         wrong = f"{TOO_LOW}={airspace.min_height:g} m, and there is no free way straight up from it"
     raise ValueError(f"{argument} {checks.show(position)} {wrong}; {nearest_allowed(city, position, ~blocked)}")
+
+
+def end_nearby(airspace: Airspace, city: LazyCity, point: npt.ArrayLike, argument: str) -> tuple[int, tuple[int, ...]]:
+    """`end_at` on a lazy city, from what is around the point."""
+    position = checked_position(city, point, argument)
+    beyond = airspace.promises["min_clearance"] + city.cell  # what lies this near to the part's border isn't known
+    part = city.part(position, margin=NEARBY * city.cell + beyond)
+    first = np.round((part.origin - city.origin) / city.cell).astype(int)
+    local = airspace._replace(city=part)
+    blocked = local.blocked.copy()
+    border = int(np.ceil(beyond / city.cell))
+    for axis in range(2):
+        low, high = first[axis], city.shape[axis] - first[axis] - part.shape[axis]
+        rows = np.moveaxis(blocked, axis, 0)
+        rows[: border * (low > 0)] = True
+        rows[part.shape[axis] - border * (high > 0) :] = True
+    code, passed = end_at(local, blocked, position, argument)
+    codes = city.code_of(part.index_of([code, *passed]) + first).tolist()
+    return codes[0], tuple(codes[1:])
 
 
 @compiled

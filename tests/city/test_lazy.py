@@ -1,0 +1,194 @@
+"""Lazy cities against plain ones of the same buildings: every voxel, every distance."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from uavlab.city import Building, City, LazyCity, NoFlyZone, Terrain, table1_buildings
+from uavlab.city.lazy import WHOLE
+from uavlab.planners import potential_field, theta_star
+from uavlab.route import Route
+
+
+def bodies(rng, origin, size, cell):
+    """Prisms and pyramids, on the ground and above it, some with corners on borders of voxels, some off the map."""
+    made = []
+    for _ in range(rng.integers(1, 16)):
+        centre = origin[:2] + rng.uniform(-0.1, 1.1, 2) * size[:2]
+        angle, extent = rng.uniform(0, 6), rng.uniform(0.3, 0.4 * max(size[0], 1.0), 2) * rng.choice([1, 0.3])
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * extent @ turn.T + centre
+        if rng.random() < 0.3:
+            corners = origin[:2] + np.array([[0, 0], [1, 0], [1, 2], [0, 2]]) * cell * 3 + cell * rng.integers(0, 20)
+        bottom = origin[2] + rng.choice([0.0, rng.uniform(0, 0.6) * size[2]])
+        top = bottom + 0.1 + rng.uniform(0, 0.5) * size[2]
+        if rng.random() < 0.6:
+            made.append(Building.prism(corners, top, bottom=bottom))
+        else:
+            made.append(Building.hull([*((x, y, bottom) for x, y in corners), (*corners.mean(axis=0), top)]))
+    return made
+
+
+def both(seed, most=(70, 70, 70)):
+    """A plain city and a lazy one: odd shapes and cells, far from x = y = 0, level ground, zones."""
+    rng = np.random.default_rng(seed)
+    cell = rng.choice([1.0, 0.5, 2.5, 1 / 3])
+    origin = rng.choice([0, 1]) * np.array([455000.37, 5.7e6 + 0.11, 33.3]) + rng.random(3)
+    size = cell * rng.integers(5, most, 3)
+    zone = NoFlyZone(origin[:2] + rng.random((3, 2)) * size[:2], rng.uniform(0, 10), 10 + rng.uniform(0, size[2]))
+    options = {
+        "cell": cell, "origin": origin, "size": size - 1e-6, "no_fly": [zone] * int(rng.integers(2)),
+        "terrain": rng.choice([None, origin[2] + rng.uniform(0, 0.2) * size[2]]),
+    }  # fmt: skip
+    buildings = bodies(rng, origin, size, cell)
+    return City.from_buildings(buildings, **options), City.from_buildings(buildings, **options, lazy=True), rng
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_any_window_has_the_voxels_of_the_whole_map(seed):
+    plain, lazy, rng = both(seed)
+    assert isinstance(lazy, LazyCity)
+    assert lazy.shape == plain.shape
+    assert np.array_equal(lazy.bounds, plain.bounds)
+    for _ in range(5):
+        first = tuple(int(rng.integers(n)) for n in plain.shape[:2])
+        count = tuple(int(rng.integers(1, n - i + 1)) for n, i in zip(plain.shape[:2], first, strict=True))
+        window = tuple(slice(i, i + n) for i, n in zip(first, count, strict=True))
+        assert np.array_equal(lazy.window(first, count), plain.occupied[window])
+        clearance, least = rng.choice([0.0, rng.uniform(0, 6) * plain.cell]), rng.choice([0.0, 3.0])
+        most = rng.choice([np.inf, least + 0.5 * plain.shape[2] * plain.cell])
+        blocked = plain.blocked(clearance, min_height=least, max_height=most)[window]
+        assert np.array_equal(lazy.blocked_window(first, count, clearance, least, most), blocked)
+
+
+@pytest.mark.parametrize("seed", range(40, 60))
+def test_points_and_lines_are_as_far_from_obstacles(seed):
+    plain, lazy, rng = both(seed)
+    low, high = plain.bounds
+    start, end = rng.uniform(low - 5, high + 5, (2, 30, 3))
+    assert np.allclose(lazy.segment_distance(start, end), plain.segment_distance(start, end), rtol=0, atol=1e-6)
+    near = lazy.segment_distance(start, end, at_most=2.0)
+    assert np.allclose(near, plain.segment_distance(start, end, at_most=2.0), rtol=0, atol=1e-6)
+    assert np.allclose(lazy.distance(start), plain.distance(start, exact_within=1e9), rtol=0, atol=1e-6)
+    assert np.array_equal(lazy.is_free(start), plain.is_free(start))
+    assert np.array_equal(lazy.is_free_line(start, end, 1.0), plain.is_free_line(start, end, 1.0))
+    assert np.allclose(lazy.height_above_ground(start), plain.height_above_ground(start), rtol=0, atol=1e-9)
+    inside = Route(rng.uniform(low, high, (9, 3)))
+    assert inside.clearance(lazy) == pytest.approx(inside.clearance(plain), abs=1e-6)
+
+
+def test_far_from_everything_distances_are_found_in_windows_that_grow():
+    tower = Building.prism([(400, 0), (410, 0), (410, 10), (400, 10)], 30)
+    plain, lazy = (
+        City.from_buildings([tower], origin=(0, 0, 0), size=(500, 200, 60), lazy=lazy) for lazy in (False, True)
+    )
+    points = np.array([(1.5, 5.5, 10.5), (300.5, 199.5, 59.5), (-50, 5, 10)])
+    assert np.allclose(lazy.distance(points), plain.distance(points, exact_within=1e9), rtol=0, atol=1e-9)
+    far = City.from_buildings(
+        [tower, Building.prism([(0, 3900), (5, 3900), (5, 3990)], 9)],
+        origin=(0, 0, 0),
+        size=(5000, 5000, 60),
+        lazy=True,
+    )
+    assert float(far.distance((4400.5, 5.5, 10.5))) == 3990.5
+    assert float(far.distance((2.5, 2900.0, 3.5))) == 1000.0
+    assert float(far.segment_distance((2.5, 2000, 9.5), (900, 3000, 9.5), at_most=300.0)) == 300.0
+    nothing = City.from_buildings([], origin=(0, 0, 0), size=(500, 200, 60), lazy=True)
+    assert np.isinf(nothing.distance(points)).all()
+    assert nothing.is_free((1, 1, 1))
+
+
+@pytest.mark.parametrize("seed", range(60, 70))
+def test_a_part_is_a_plain_city_of_the_same_voxels(seed):
+    plain, lazy, rng = both(seed)
+    way = Route(rng.uniform(*plain.bounds, (3, 3)))
+    part = lazy.part(way, margin=2.0)
+    assert type(part) is City
+    first = np.round((part.origin - plain.origin) / plain.cell).astype(int)
+    window = tuple(slice(i, i + n) for i, n in zip(first, part.shape, strict=True))
+    assert np.array_equal(part.occupied, plain.occupied[window])
+    assert part.inside(way.points).all()
+    middle = way.points.mean(axis=0)
+    assert part.height_above_ground(middle) == pytest.approx(plain.height_above_ground(middle), abs=1e-9)
+    at = plain.bounds[0] - (3.0, 0.0, 0.0)
+    with pytest.raises(ValueError, match="around must have points near the map, within 1 m"):
+        lazy.part(at, margin=1.0)
+
+
+def city_of_twelve_billion():
+    return City.from_buildings(table1_buildings(), origin=(0, 0, 0), size=(10_000, 10_000, 120), lazy=True)
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_what_needs_every_voxel_says_so_and_what_to_do(name):
+    with pytest.raises(ValueError, match=rf"{name} needs all 12,000,000,000 voxels of 'city'.*city\.part\(around="):
+        getattr(city_of_twelve_billion(), name)
+
+
+def test_planners_that_need_everything_say_so():
+    city = city_of_twelve_billion()
+    for planner in (theta_star, potential_field):
+        with pytest.raises(ValueError, match="needs all 12,000,000,000 voxels"):
+            planner(city, (5, 5, 30), (95, 95, 30))
+    assert theta_star(city.part([(5, 5, 30), (95, 95, 30)]), (5, 5, 30), (95, 95, 30)).reached
+
+
+def test_a_part_that_is_too_large_is_refused():
+    with pytest.raises(ValueError, match=r"part of more than 500,000,000 voxels: take it around less of the way"):
+        city_of_twelve_billion().part([(5, 5, 30), (9995, 9995, 30)])
+
+
+def test_random_pairs_are_free_and_apart():
+    city = city_of_twelve_billion()
+    pairs = city.random_pairs(5, 3, apart=2000.0, min_clearance=2.0)
+    assert pairs.shape == (5, 2, 3)
+    assert (np.linalg.norm(pairs[:, 1] - pairs[:, 0], axis=1) >= 2000.0).all()
+    assert (city.distance(pairs) >= 2.0).all()
+    assert np.array_equal(pairs, city.random_pairs(5, 3, apart=2000.0, min_clearance=2.0))
+    with pytest.raises(ValueError, match="no 1 pairs found"):
+        City.from_buildings(table1_buildings(), lazy=True).random_pairs(1, 1, apart=1e6)
+
+
+def test_attributes_can_be_replaced_and_are_checked():
+    city = city_of_twelve_billion()
+    zone = NoFlyZone([(0, 0), (20, 0), (20, 20)], name="school")
+    closed = dataclasses.replace(city, no_fly=[zone])
+    assert closed.shape == city.shape
+    assert closed.zone_at((15, 2, 5)) == "school"
+    for wrong, words in (
+        ({"extent": (0, 5, 5)}, "extent must be three whole numbers of at least 1"),
+        ({"extent": (10**6, 10**6, 10)}, "more than 100,000,000,000 voxels"),
+        ({"level": np.nan}, "level"),
+        ({"ground": np.zeros((3, 3))}, "ground can't be given to a lazy city"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            dataclasses.replace(city, **wrong)
+
+
+def test_what_a_lazy_city_can_t_be_is_refused():
+    hill = Terrain([(-50, -50, 0), (200, -50, 0), (200, 200, 9), (-50, 200, 0)], [(0, 1, 2), (0, 2, 3)])
+    with pytest.raises(ValueError, match="lazy=True needs level ground"):
+        City.from_buildings(table1_buildings(), terrain=hill, lazy=True)
+    with pytest.raises(ValueError, match="lazy=True knows only voxels='touched'"):
+        City.from_buildings(table1_buildings(), voxels="centres", lazy=True)
+    with pytest.raises(ValueError, match="more than 100,000,000,000"):
+        City.from_buildings(table1_buildings(), origin=(0, 0, 0), size=(1e6, 1e6, 100), lazy=True)
+    with pytest.raises(ValueError, match="or lazy=True"):
+        City.from_buildings(table1_buildings(), origin=(0, 0, 0), size=(1e4, 1e4, 100))
+
+
+def test_files_can_be_read_lazily(tmp_path):
+    import json
+
+    from uavlab.city import read_city
+
+    square = [[13.0, 52.0], [13.001, 52.0], [13.001, 52.001], [13.0, 52.001], [13.0, 52.0]]
+    house = {"type": "Feature", "properties": {"height": 20}, "geometry": {"type": "Polygon", "coordinates": [square]}}
+    path = tmp_path / "town.geojson"
+    path.write_text(json.dumps(house))
+    plain, lazy = read_city(path, cell=2.0), read_city(path, cell=2.0, lazy=True)
+    assert isinstance(lazy, LazyCity)
+    assert lazy.source is not None
+    assert np.array_equal(lazy.window((0, 0), lazy.shape[:2]), plain.occupied)
+    assert np.array_equal(lazy.to_geographic((5, 5, 5)), plain.to_geographic((5, 5, 5)))
