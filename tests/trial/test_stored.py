@@ -7,8 +7,10 @@ import pytest
 
 from uavlab.trial import (
     CLAIMS,
+    Experiment,
     Finding,
     Measured,
+    agree,
     claims_table,
     read_findings,
     run_trial,
@@ -139,3 +141,23 @@ def test_a_value_beyond_the_axis_stands_at_its_end():
     for value, end in ((0.0, 0.1), (1e6, 10.0)):
         figure = verdict_figure([Finding.of(claim, Measured(value, value, value, "some"), "")])
         assert figure.axes[0].lines[1].get_xdata()[0] == pytest.approx(end)
+
+
+def test_quick_samples_agree_with_the_full_ones(stored):
+    """All of them: an experiment that changed has to be measured anew."""
+    for finding in run_trial(progress=False):
+        assert agree(finding, stored[finding.key]), finding.key
+        if finding.claim.experiment and finding.claim.experiment.full == 1:
+            assert finding.measured[:3] == pytest.approx(stored[finding.key].measured[:3], rel=1e-5), finding.key
+            assert finding.measured.sample == stored[finding.key].measured.sample
+
+
+def size_and_seed(size, seed):
+    return {"size": Measured(size, size, size, f"seed {seed}")}
+
+
+@pytest.mark.parametrize(("full", "size"), [(False, 3), (True, 8)])
+def test_samples_have_the_size_and_the_seed_that_are_asked_for(full, size):
+    claim = replace(CLAIMS[0], experiment=Experiment(size_and_seed, 3, 8, 5), of="size")
+    (found,) = run_trial([claim], full=full, progress=False)
+    assert found.measured == (size, size, size, "seed 5")
