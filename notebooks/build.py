@@ -7,7 +7,8 @@ taken out. `--check` changes nothing and fails if anything is stale. `--html` ru
 `notebooks/html/` as pages that work offline, each in one file with its scenes, sliders and equations. `--page FILE`
 writes a project that a student has run and saved as such a page, beside it. `--nbgrader FOLDER` makes assignments of
 the exercises. `--full` measures all claims of the papers anew, with full samples, and writes them to
-`notebooks/trial.csv`; chapter 15 reads it. The tables for teachers in `notebooks/README.md` are kept up to date, too.
+`notebooks/trial.csv`; chapter 15 reads it. The tables for teachers in `notebooks/README.md` are kept up to
+date, too, and the pictures of the README, which are those of cells with the tag `gallery`.
 """
 
 import argparse
@@ -16,6 +17,7 @@ import re
 import sys
 from pathlib import Path
 
+import gallery
 import jupytext
 import nbformat
 import teaching
@@ -87,8 +89,12 @@ def main() -> int:
             print(f"stale: notebooks/trial.csv: {old}")
         if tables != guide:
             print("stale: notebooks/README.md: its tables differ from the chapters; run python notebooks/build.py")
+        for picture in (old_pictures := gallery.stale()):
+            print(
+                f"stale: {picture.relative_to(HERE.parent)}: its chapter draws another; run python notebooks/build.py"
+            )
         print(f"{len(sources)} notebooks, {len(stale)} stale, {len(orphans)} without a source")
-        return 1 if stale or orphans or old or tables != guide else 0
+        return 1 if stale or orphans or old or old_pictures or tables != guide else 0
     for source in sources if options.all or options.names else stale:
         print(f"running {source.relative_to(SOURCES)}", flush=True)
         write(executed(jupytext.read(source)), target(source))
@@ -96,6 +102,7 @@ def main() -> int:
             write(exercise(source), exercise_target(source))
     if tables != guide:
         readme.write_text(tables, encoding="utf-8")
+    gallery.write()
     return 0
 
 

@@ -1,5 +1,6 @@
 """What is stored: read and written without loss, refused when it is old, and as chapters have it."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -161,3 +162,35 @@ def test_samples_have_the_size_and_the_seed_that_are_asked_for(full, size):
     claim = replace(CLAIMS[0], experiment=Experiment(size_and_seed, 3, 8, 5), of="size")
     (found,) = run_trial([claim], full=full, progress=False)
     assert found.measured == (size, size, size, "seed 5")
+
+
+README = STORED.parents[1] / "README.md"
+IN_THE_README = [
+    ("REPARE", "Table 2: A* over the field, lattice, weak", "0.952 [0.944, 0.961]", 3),
+    ("REPARE", "Table 2: A* over the field, continuous, weak", "1.032 [1.018, 1.045]", 3),
+    ("REPARE", "Section 2.2.2, Fig. 2: one axis", "99.73 % of moments", 2),
+    ("REPARE", "Fig. 18: circle of 99.73 %, a flight", "91.6 % [89.7, 93.2] of flights", 1),
+    ("RISK-ACO", "Table 5: possible", "(80.7 %)", 1),
+    ("RISK-ACO", "Table 5: on most maps", "22.5 % [10.8, 38.5] of 40", 1),
+    ("RISK-ACO", "Conclusions: it can be flown", "0 % [0, 8.8] of 40", 1),
+    ("PSO-BAS", "Conclusions: it can be flown", "0 % [0, 8.8] of 40", 1),
+]
+
+
+def test_the_readme_counts_the_verdicts(stored):
+    lines = README.read_text(encoding="utf-8").splitlines()
+    for paper in ("REPARE", "RISK-ACO", "PSO-BAS"):
+        verdicts = [finding.verdict for finding in stored.values() if finding.claim.paper == paper]
+        counts = [verdicts.count(one) for one in ("holds", "partly", "not shown", "doesn't", "can't be checked")]
+        assert sum(counts) == len(verdicts)
+        assert "| " + " | ".join(map(str, [paper, len(verdicts), *counts])) + " |" in lines
+
+
+@pytest.mark.parametrize(("paper", "item", "words", "digits"), IN_THE_README)
+def test_the_readme_has_the_stored_numbers(stored, paper, item, words, digits):
+    text = " ".join(README.read_text(encoding="utf-8").split())
+    assert words in text
+    measured = stored[paper, item].measured
+    said = [float(number) for number in re.findall(r"\d+\.?\d*", words.replace("of 40", ""))]
+    true = [measured.value, measured.low, measured.high][: len(said)]
+    assert said == pytest.approx(true, abs=0.5001 * 10**-digits)
