@@ -192,3 +192,52 @@ def test_files_can_be_read_lazily(tmp_path):
     assert lazy.source is not None
     assert np.array_equal(lazy.window((0, 0), lazy.shape[:2]), plain.occupied)
     assert np.array_equal(lazy.to_geographic((5, 5, 5)), plain.to_geographic((5, 5, 5)))
+
+
+@pytest.mark.parametrize("cell", [0.5, 1.0, 2.5])
+def test_a_part_reaches_as_far_as_its_margin_and_less_than_a_cell_farther(cell):
+    city = City.from_buildings(
+        table1_buildings(), origin=(3.2, -7.1, 0), size=(300, 300, 60), cell=cell, lazy=True, terrain=2.5
+    )
+    points = np.array([(100.3, 120.9, 5.0), (140.7, 131.2, 9.0)])
+    part = city.part(points, margin=20.0)
+    before = points.min(axis=0) - part.bounds[0]
+    after = part.bounds[1] - points.max(axis=0)
+    for beyond in (before[:2], after[:2]):
+        assert (beyond >= 20.0).all()
+        assert (beyond <= 20.0 + cell).all()
+
+
+def test_a_part_has_the_zones_and_the_ground_of_the_map():
+    zone = NoFlyZone([(10, 10), (40, 10), (40, 40)], name="school")
+    city = City.from_buildings(
+        table1_buildings(), origin=(0, 0, 0), size=(200, 200, 60), lazy=True, terrain=2.5, no_fly=[zone]
+    )
+    part = city.part((30, 20, 30), margin=20.0)
+    assert part.zone_at((35, 15, 5)) == "school"
+    assert float(part.height_above_ground((30, 20, 30))) == 27.5
+
+
+def test_random_pairs_keep_their_clearance_where_there_is_little_room():
+    walls = [Building.prism([(x, 0), (x + 2, 0), (x + 2, 60), (x, 60)], 30.0) for x in range(0, 60, 12)]
+    zone = NoFlyZone([(0, 0), (60, 0), (60, 30), (0, 30)])
+    plain, lazy = (
+        City.from_buildings(walls, origin=(0, 0, 0), size=(60, 60, 30), no_fly=[zone], lazy=lazy)
+        for lazy in (False, True)
+    )
+    blocked = plain.blocked(3.0)
+    pairs = lazy.random_pairs(40, 3, apart=20.0, min_clearance=3.0)
+    assert 0.8 < blocked.mean() < 0.9
+    assert not blocked[tuple(np.moveaxis(plain.cell_of(pairs), -1, 0))].any()
+
+
+def test_from_afar_the_nearest_of_two_buildings_that_are_nearly_as_far():
+    # in voxels the first begins at x = 2000, a cell before itself; so it is nearer, though its box isn't
+    towers = [
+        Building.prism([(2000.9, 0), (2010, 0), (2010, 10), (2000.9, 10)], 30),
+        Building.prism([(0, 2000.5), (10, 2000.5), (10, 2010), (0, 2010)], 30),
+    ]
+    for order in (towers, towers[::-1]):
+        city = City.from_buildings(order, origin=(0, 0, 0), size=(5000, 5000, 60), lazy=True)
+        assert float(city.distance((5.0, 5.4, 5.0))) == 1994.6
+        assert float(city.distance((5.6, 5.4, 5.0))) == pytest.approx(1994.4, abs=1e-9)

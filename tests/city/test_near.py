@@ -64,3 +64,15 @@ def test_near_needs_no_clearance_and_is_kept():
     assert city.blocked(5.0) is near
     assert not near.flags.writeable
     assert np.array_equal(city.clearance < 5.0, near)
+
+
+@pytest.mark.parametrize("distance", [1.0, 1.5, 2.5, 4.0])
+def test_what_is_exactly_as_far_as_is_kept_is_not_near(distance):
+    asked = distance + 1e-9
+    assert least_kept(asked, 1.0) == distance  # to the last bit
+    occupied = np.zeros((11, 11, 11), dtype=bool)
+    occupied[5, 5, 5] = True
+    found, expected = both(City(occupied), asked)
+    assert np.array_equal(found, expected)
+    if distance % 1 == 0.5:
+        assert not found[5, 5, 5 + round(distance + 0.5)]

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from uavlab.city import Building, City, NoFlyZone
+from uavlab.city.near import bits_of
 from uavlab.planners import astar, both_ends, shortcut
+from uavlab.planners.lazy_search import around_in
 
 
 def town(seed, lots=6, lot=27.0, height=50.0):
@@ -138,3 +140,67 @@ def test_a_shortcut_in_parts_keeps_the_clearance_and_is_nearly_as_short(seed, pi
     assert short.cost == pytest.approx(short.length)
     assert whole.length - 1e-6 <= short.length <= min(route.length, 1.02 * whole.length)
     assert len(short.points) < len(route.points)
+
+
+@pytest.mark.parametrize("height", [61, 62, 63, 64, 65, 126, 127, 128])
+def test_columns_of_any_number_of_words(height):
+    wall = Building.prism([(20, 0), (22, 0), (22, 30), (20, 30)], height - 1.0)  # one voxel is free above it
+    plain, lazy = (
+        City.from_buildings([wall], origin=(0, 0, 0), size=(40, 30, height), lazy=lazy) for lazy in (False, True)
+    )
+    pair = (10.5, 15.5, 0.5), (30.5, 12.5, 3.5)
+    for clearance in (0.0, 0.5):
+        whole, local = (astar(city, *pair, min_clearance=clearance) for city in (plain, lazy))
+        assert local.reached == whole.reached
+        assert local.cost == pytest.approx(whole.cost, rel=3e-9)
+        assert local.points[:, 2].max() == height - 0.5
+
+
+def test_a_way_of_many_voxels_is_whole_where_codes_are_beyond_32_bits():
+    city = City.from_buildings([], origin=(0, 0, 0), size=(10_000, 10_000, 30), lazy=True)
+    start, goal = np.array((9900.5, 9900.5, 9.5)), np.array((4110.5, 6700.5, 9.5))
+    route = astar(city, start, goal)
+    assert np.array_equal(route.points[[0, -1]], [start, goal])
+    assert len(route.points) == 5791
+    assert (np.abs(np.diff(route.points, axis=0)).max(axis=1) == 1).all()
+    assert route.length == pytest.approx(2590 + 3200 * np.sqrt(2.0))
+
+
+@pytest.mark.parametrize("cell", [0.5, 2.5])
+def test_what_is_proven_without_memory_is_in_metres_and_not_too_much(cell, monkeypatch):
+    monkeypatch.setattr(both_ends, "MOST_NODES", 40 * 512)
+    monkeypatch.setattr(both_ends, "FIRST_TURN", 100)
+    wall = Building.prism(cell * np.array([(60, 0), (63, 0), (63, 148), (60, 148)]), 40.0 * cell)
+    plain, lazy = (
+        City.from_buildings([wall], origin=(0, 0, 0), size=cell * np.array([150, 150, 40]), cell=cell, lazy=lazy)
+        for lazy in (False, True)
+    )
+    pair = cell * np.array([(5.5, 5.5, 20.5), (140.5, 20.5, 20.5)])
+    reason = astar(lazy, *pair).reason
+    proven = float(reason.split("at least ")[1].split(" m")[0])
+    assert np.linalg.norm(pair[1] - pair[0]) - 0.1 <= proven <= astar(plain, *pair).cost + 0.1
+
+
+@pytest.mark.parametrize("turn", [300, 3000, 20_000])
+def test_what_one_search_knows_spares_the_other_most_of_the_map(turn, monkeypatch):
+    monkeypatch.setattr(both_ends, "FIRST_TURN", turn)
+
+    def ring(x, y, door):
+        court = [(x + 2, y + 2), (x + 18, y + 2), (x + 18, y + 18), (x + 2, y + 18)]
+        return Building.prism([(x, y), (x + 20, y), (x + 20, y + 20), (x, y + 20)], door, holes=[court])
+
+    wall = Building.prism([(100, 0), (103, 0), (103, 130), (100, 130)], 38.0)
+    buildings = [ring(10, 70, 33.0), ring(165, 60, 36.0), wall]
+    plain, lazy = (City.from_buildings(buildings, origin=(0, 0, 0), size=(195, 150, 40), lazy=a) for a in (False, True))
+    pair = (20.5, 80.5, 3.5), (175.5, 70.5, 4.5)
+    whole, local = (astar(city, *pair, min_clearance=1.0) for city in (plain, lazy))
+    assert local.info["expanded"] < 0.3 * whole.info["expanded"]
+
+
+@pytest.mark.parametrize("height", [1, 61, 62, 63, 64, 65, 126, 127, 130])
+def test_bits_around_a_voxel_are_those_of_its_box(height):
+    blocked = np.random.default_rng(height).random((5, 6, height + 2)) < 0.5
+    bits = bits_of(blocked)
+    for k in range(height):
+        box = blocked[1:4, 2:5, k : k + 3].ravel()
+        assert around_in(bits, 1, 2, k) == sum(1 << n for n in np.flatnonzero(box).tolist()), k
