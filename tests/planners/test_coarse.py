@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 from grid_references import additive_cost, cheapest_by_scipy, is_legal, ways
+from scipy.interpolate import RegularGridInterpolator
 from scipy.ndimage import gaussian_filter
+from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from uavlab.city import City, table1_city
@@ -87,6 +89,52 @@ def test_estimate_is_consistent_and_never_above_the_true_cost(seed):
     assert (estimate[~city.occupied.ravel()] <= true[~city.occupied.ravel()] * (1 + 1e-9) + least).all()
 
 
+def by_definition(city, price, start, goal, weights):
+    """The estimate by one order of the weights (nodes,): SciPy's Dijkstra over the corners, and its interpolation."""
+    edge, blocks = coarse.BLOCK, -(-np.array(city.shape) // coarse.BLOCK)
+    free = np.full(blocks * edge, coarse.WALL * price.max())
+    free[tuple(slice(n) for n in city.shape)] = np.where(city.occupied, free.max(), price)
+    least = np.pad(free.reshape(np.c_[blocks, [edge] * 3].ravel()).min(axis=(1, 3, 5)), 1, constant_values=np.inf)
+    code = np.arange((blocks + 1).prod()).reshape(blocks + 1)
+    steps = []
+    for corner in np.ndindex(*(blocks + 1)):
+        around = least[tuple(slice(n, n + 2) for n in corner)]
+        for axis in range(3):
+            if corner[axis] < blocks[axis]:
+                touched = np.take(around, 1, axis).min()
+                steps.append((code[corner], code[corner] + code.strides[axis] // 8, touched * weights[axis]))
+    one, other, cost = np.transpose(steps)
+    cost = np.maximum(edge * cost, 1e-300)  # a step that is free is one, too
+    ways_there = coo_array((cost, (one.astype(int), other.astype(int))), (code.size, code.size)).tocsr()
+    at_start, at_goal = (
+        code[tuple(slice(n, n + 2) for n in city.cell_of(end) // edge)].ravel() for end in (start, goal)
+    )
+    far = dijkstra(ways_there, directed=False, indices=at_goal, min_only=True)
+    far = np.minimum(far, coarse.BEYOND * far[at_start].max()).reshape(code.shape)
+    between = RegularGridInterpolator([edge * np.arange(n) for n in code.shape], far)
+    return between(np.argwhere(np.ones(city.shape, bool)) + 0.5)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_estimate_is_the_greatest_by_the_six_orders_and_the_distance(seed):
+    city, price, (start, goal) = random_case(seed)
+    away = np.abs(np.argwhere(np.ones(city.shape, bool)) - city.cell_of(goal))
+    distances = price.min() * (away @ coarse.WEIGHTS.T).T
+    expected = np.max([*distances, *(by_definition(city, price, start, goal, w) for w in coarse.WEIGHTS)], axis=0)
+    assert estimates(city, price, start, goal) == pytest.approx(expected, rel=1e-9, abs=1e-12 * price.max())
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_among_nearly_equal_prices_the_cheapest_route_is_found_to_a_billionth(seed):
+    """An estimate in single precision would take another one."""
+    rng = np.random.default_rng(seed)
+    city = City(np.zeros((64, 8, 8), bool))
+    price = 3.0 + 3e-7 * rng.integers(0, 2, city.shape)
+    for start, goal in ((1, 1, 1), (63, *rng.integers(1, 8, 2))), ((1, 7, 2), (63, *rng.integers(1, 8, 2))):
+        route = astar(city, start, goal, price=price, heuristic="coarse")
+        assert route.cost == pytest.approx(cheapest_by_scipy(city, start, goal, price), rel=1.2e-9)
+
+
 def test_estimate_is_no_weaker_than_distance_at_the_cheapest_price():
     city, price, (start, goal) = random_case(0)
     far = estimates(city, np.full(city.shape, price.min()), start, goal)
@@ -148,6 +196,16 @@ def test_it_is_taken_where_nearly_every_voxel_is_far_from_the_cheapest():
     noise = smooth(city.shape, np.random.default_rng(0))
     assert astar(city, *ends, price=noise).info["heuristic"] == "coarse"
     assert astar(city, *ends, price=noise, as_printed=True).info["heuristic"] == "octile"
+
+
+@pytest.mark.parametrize("shape", [(101, 101, 101), (100, 100, 50), (100, 100, 100)])
+@pytest.mark.parametrize("behind", [False, True])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("cheap", [0.0, 0.05, 0.15, 0.5])
+def test_a_tenth_of_the_map_may_be_cheap_wherever_it_lies(cheap, axis, behind, shape):
+    place = np.indices(shape)[axis] / shape[axis]
+    price = np.where((1 - place if behind else place) < cheap, 1.0, 2.0)
+    assert coarse.is_uneven(price, 1.0) is (cheap < 0.1) is bool((price == 1).mean() < 0.1)
 
 
 def test_it_needs_a_price_that_is_added_up():

@@ -40,6 +40,18 @@ def test_front_is_that_of_the_search_without_bounds(seed, monkeypatch):
         assert answers(front, AT_ONCE, monkeypatch) == answers(front, WITHOUT, monkeypatch)
 
 
+@pytest.mark.parametrize("seed", range(60))
+def test_so_it_is_with_many_limits_some_of_them_too_short_or_just_missed(seed, monkeypatch):
+    """Neighbours are then taken together, those that no route keeps with those that one does."""
+    risk_map, ends, limits, best = constrained_case(seed)
+    every = np.array([length for _, length in best] or [risk_map.city.cell])
+    missed = every * (1 - 1e-10)
+    many = (np.r_[np.linspace(0.7 * every[0], 1.05 * every[-1], count), missed] for count in (70, 150))
+    for lengths in (*many, *missed):
+        front = lambda lengths=lengths: pareto_front(risk_map, *ends, **limits, lengths=lengths)  # noqa: E731
+        assert answers(front, AT_ONCE, monkeypatch) == answers(front, WITHOUT, monkeypatch)
+
+
 @pytest.mark.parametrize("drift", [False, True])
 @pytest.mark.parametrize("number", range(6))
 def test_campus_front_is_that_of_the_search_without_bounds(number, drift, monkeypatch):
@@ -90,6 +102,21 @@ def test_bounds_spare_nine_labels_of_ten_with_drift():
     given_up = risk_labels.search_labels(query, by_length, rest, rest_length, limits, multipliers.no_bounds(), 1000)
     assert not given_up.ended
     assert 1000 < len(given_up.state) < 1030
+
+
+def test_a_search_that_has_not_found_all_says_that_it_was_given_up():
+    """Whatever the patience: its answers are complete, or it tells that they are not."""
+    risk_map, ends, limits, best = constrained_case(1)
+    query, by_length, rest, rest_length = asked(risk_map, ends, **limits)
+    cells = np.array([length for _, length in best]) / risk_map.city.cell
+    search = lambda patience: risk_labels.search_labels(  # noqa: E731
+        query, by_length, rest, rest_length, cells, multipliers.no_bounds(), patience
+    )
+    every = search(np.inf)
+    assert len(every.found) == len(best) > 1
+    ended = [found.ended for found in map(search, range(len(every.state) + 2)) if len(found.found) < len(best)]
+    assert len(ended) > 10
+    assert not any(ended)
 
 
 def test_of_many_limits_neighbours_are_taken_together():

@@ -34,6 +34,7 @@ BEYOND = 1.05
 UNEVEN = 1.5
 """Of the cheapest price: where the cheapest tenth of a map costs more than that, blocks tell more than distances."""
 
+GOLDEN = (5**0.5 - 1) / 2
 SAMPLE = 2_000
 """Voxels that are looked at to tell so."""
 
@@ -55,7 +56,8 @@ class Coarse(NamedTuple):
 
 def is_uneven(price: np.ndarray, cheapest: float) -> bool:
     """Whether nearly every voxel costs much more than the cheapest."""
-    sample = price.reshape(-1)[:: max(price.size // SAMPLE, 1)]
+    everywhere = np.arange(SAMPLE) * GOLDEN % 1  # evenly, and in step with no axis
+    sample = price.reshape(-1)[(everywhere * price.size).astype(int)]
     tenth = len(sample) // 10
     return bool(np.partition(sample, tenth)[tenth] > UNEVEN * cheapest)
 
