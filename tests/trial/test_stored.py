@@ -137,7 +137,7 @@ def test_the_figure_has_a_row_for_each_claim_that_could_be_checked(stored, paper
     assert sorted(labels) == sorted(finding.claim.item for finding in drawn)
     assert len(set(labels)) == len(labels)
     assert all(paper in axes.get_title() for axes in figure.axes)
-    with pytest.raises(ValueError, match="findings must have one that was measured"):
+    with pytest.raises(ValueError, match="findings must have one that could be checked"):
         verdict_figure([Finding.of(CLAIMS[1], None, "")])
 
 
