@@ -265,7 +265,8 @@ assert "of 68 that differ, of 75 pairs" in found["REPARE", "Section 3.2: a small
 verdict_figure(by_paper["REPARE"])
 
 # %% [markdown]
-# *REPARE: measured values with their intervals; the black stroke is the paper's number.* Most percentages lie deep in the
+# *REPARE: measured values with their intervals; the black stroke is the paper's number. An arrow has the value of a
+# mark that lies beyond the axis; what is exact has no bar.* Most percentages lie deep in the
 # green: whether A\* crashes more often than REPARE isn't close. The printed numbers are harder to meet. The two rows
 # "continuous, weak" stand off the green: there the field is the shorter one.
 
@@ -273,14 +274,14 @@ verdict_figure(by_paper["REPARE"])
 verdict_figure(by_paper["RISK-ACO"])
 
 # %% [markdown]
-# *RISK-ACO. An arrow has the value of a mark that lies beyond the axis.* The interval of "a safe flight" goes from 2.5 %
+# *RISK-ACO, with the same marks.* The interval of "a safe flight" goes from 2.5 %
 # to 100 %: it comes from one flight. That some maps have the promised detour holds, that most have it doesn't.
 
 # %% tags=["figure"]
 verdict_figure(by_paper["PSO-BAS"])
 
 # %% [markdown]
-# *PSO-BAS.* With the printed settings the beetles help on three test functions, with ours they don't, or it isn't shown.
+# *PSO-BAS, with the same marks.* With the printed settings the beetles help on three test functions, with ours they don't, or it isn't shown.
 #
 # > **Predict first.** Some claims give a number, others only a direction, such as "safer than". Which kind holds more
 # > often?
@@ -299,7 +300,7 @@ table = pd.crosstab(verdicts, pd.Series([kind(finding.claim) for finding in chec
 table.loc["holds [%]"] = (100 * table.loc["holds"] / table.sum()).round().astype(int)
 print(table.to_string())
 sampled = sum(finding.measured.low < finding.measured.high for finding in checked)
-print(f"{len(checked)} of {len(findings)} claims could be checked, {sampled} of them not exactly")
+print(f"{len(checked)} of {len(findings)} claims could be checked, {sampled} of them with an interval")
 
 # %% tags=["check"]
 assert table.loc["holds [%]", ["a direction", "a number"]].tolist() == [67, 25]
@@ -368,7 +369,7 @@ for line_now in (50, 60, 70, 80, 100):
     print(f"A* crashes in more than {line_now} % of the flights: {verdict(moved_now, collides.measured)}")
 
 # %% [markdown]
-# Chance has a share, too. 60 of the 85 verdicts don't come from an exact value. If each 95 % interval misses the true
+# Chance has a share, too. 60 of the 85 verdicts come from an interval. If each 95 % interval misses the true
 # value in one case of twenty, about 3 of the 60 do. A verdict near its line shouldn't be quoted without its interval.
 #
 # ## What a paper should print
