@@ -219,7 +219,8 @@ for name, item in (("voxel to voxel, medium", "lattice, medium"), ("any directio
 # The paper says that there are 0.1 cars per length of road, and doesn't say which length. We tried the metre: then a UAV
 # above one voxel of road has 11.2 times the risk that the paper gives for its *whole* route. So it can't be the metre.
 # But a missing unit is no wrong claim: it can't be checked. And "of 68 that differ, of 75 pairs" means that on 7 of the 75
-# pairs neither method was better, and the percentage is of the other 68. The rows that both risk papers share are in a
+# pairs neither method was better, and the percentage is of the other 68. A field that moves from voxel to voxel is called
+# "lattice", one that moves in any direction "continuous"; "as printed" is with a paper's own settings. The rows that both risk papers share are in a
 # table of their own.
 
 # %%
@@ -232,7 +233,7 @@ def same(finding):
     return finding.claim.says, finding.claim.of, finding.verdict
 
 
-twins = {same(finding): finding.claim.item for finding in by_paper["PSO-BAS"]}
+twins = {same(finding): finding.claim.item.partition(":")[0] for finding in by_paper["PSO-BAS"]}
 both = [finding for finding in by_paper["RISK-ACO"] if same(finding) in twins]
 named = {f.key: f"{f.claim.item} (PSO-BAS: {twins[same(f)]})" for f in both}
 

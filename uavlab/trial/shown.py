@@ -65,7 +65,7 @@ def claims_table(
     findings = checks.several("findings", findings, Finding)
     beside = {one.key: one.measured for one in checks.several("quick", quick, Finding, least=0)}
     files = checks.by_name("links", links or {}, str, least=0)
-    rows = [HEAD, ("---",) * len(HEAD)]
+    rows = [HEAD, (":---",) * len(HEAD)]  # text, so at the left
     for one in findings:
         claim, chapter = one.claim, one.claim.chapter
         sample = f" {claim.unit}; {one.measured.sample}" if one.measured else ""
