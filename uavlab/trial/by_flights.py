@@ -77,7 +77,7 @@ def in_gusts(size: int, seed: int) -> dict[str, Measured]:
         found[f"REPARE safer, {wind}"] = fewer(each(r), each(a), f"{size} pairs")
         found[f"field safer, {wind}"] = fewer(each(f), each(a)[there], f"{len(there)} pairs")
     ours, theirs = (nearest([routes[n] for n in there]) for routes in (careful, field))
-    found["smaller margin"] = fewer(ours, theirs, f"{len(there)} pairs, where the field arrives")
+    found["smaller margin"] = fewer(ours, theirs, f"{len(there)} pairs where the field arrives")
     found["field fails"] = percent([not route.reached for route in field], f"{size} pairs")
     return found
 

@@ -67,7 +67,12 @@ def forces(size: int, seed: int) -> dict[str, Measured]:
     return {
         "drag": exact(drag[0] / drag[1], "at 10 m/s in still air"),
         "lift": exact(float(margins[0]) / float(margins[1]), "light load, 100 mm/h"),
-        "rain": Measured(stuck / heaviest, stuck / heaviest, bounced / heaviest, "100 mm/h; drops stick to bounce"),
+        "rain": Measured(
+            stuck / heaviest,
+            stuck / heaviest,
+            bounced / heaviest,
+            "at 100 mm/h; no interval, but the range from drops that stick to drops that bounce",
+        ),
     }
 
 

@@ -24,6 +24,8 @@ FIELDS: dict[str, dict[str, Any]] = {
     "continuous, strong": {"moves": "continuous", "push": 500.0, "reach": 8.0},
 }
 """Four potential fields, as in chapter 06; the paper names no constants."""
+FITTED = "lattice, weak"
+"""The field whose constants were chosen so that it meets Table 2."""
 CASES = {"light, mild": ("light", "mild"), "heavy, mild": ("heavy", "mild"), "light, heavy": ("light", "heavy")}
 
 

@@ -11,7 +11,7 @@ from uavlab.statistics import over_maps, share_interval, share_over_maps
 from uavlab.trial.judging import Measured
 
 
-def exact(value: Any, sample: str = "computed") -> Measured:
+def exact(value: Any, sample: str = "computed exactly") -> Measured:
     """A value that no chance is in."""
     return Measured(float(value), float(value), float(value), sample)
 
@@ -29,7 +29,7 @@ def fewer(ours: Any, theirs: Any, sample: str) -> Measured:
     differ = ours != theirs
     if not differ.any():
         return Measured(50.0, 0.0, 100.0, f"none of {sample} differs")
-    return percent((ours < theirs)[differ], f"{differ.sum()} of {sample}, which differ")
+    return percent((ours < theirs)[differ], f"of {differ.sum()} that differ, of {sample}")
 
 
 def share_of_maps(values: Any, sample: str) -> Measured:

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from uavlab import checks
 from uavlab.sweep import sweep
-from uavlab.trial import repare, risk_papers
+from uavlab.trial import repare, repare_results, risk_papers
 from uavlab.trial.judging import Claim, Experiment, Finding, Measured
 
-CLAIMS: tuple[Claim, ...] = (*repare.CLAIMS, *risk_papers.CLAIMS)
+CLAIMS: tuple[Claim, ...] = (*repare.METHOD, *repare_results.RESULTS, *risk_papers.CLAIMS)
 """Of all three papers, in their order."""
 
 COLUMNS = ("paper", "item", "printed", "measured", "low", "high", "sample", "seed", "verdict", "versions")
