@@ -20,7 +20,7 @@ from matplotlib import pyplot
 from matplotlib.figure import Figure
 from mistakes import LENIENT, Spot, mistakes_for, variants_for
 
-TIMEOUT = 5.0
+TIMEOUT = 15.0
 """A mistake that takes longer [s] counts as endless."""
 
 PATIENCE = 30.0

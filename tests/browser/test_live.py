@@ -256,6 +256,29 @@ def test_flights_are_those_of_monte_carlo(opened, city):
     assert "stays on the ground" in page.inner_text("#offer-0 .flown")
 
 
+def test_flights_can_be_stopped_and_those_before_stay_to_compare(opened, city):
+    page = opened(live(city, *ENDS, planners=["A*"], flights=1000, settings={"wind": 3.0, "gusts": 1.0}))
+    words, row = page.inner_text("#fly"), "#offer-0 .flown"
+    page.click("#fly")
+    page.wait_for_function("document.querySelector('#offer-0 .flown').textContent.startsWith('flight ')")
+    assert page.inner_text("#fly") == "Stop"
+    page.click("#fly")
+    page.wait_for_timeout(300)
+    assert page.inner_text("#fly") == words
+    assert page.text_content(row) == ""
+    assert page.evaluate("document.body.dataset.flown ?? 'never'") == "never"
+    page.click("#fly")
+    page.wait_for_selector("body[data-flown]", timeout=SECONDS)
+    first = page.text_content(row)
+    assert "of 1000 crash" in first
+    for wind in ("4", "5"):  # changed twice, still there
+        page.fill("#set-wind", wind)
+        assert (page.text_content(row), page.get_attribute(row, "class")) == (first, "flown before")
+    page.click("#fly")
+    page.wait_for_function("document.body.dataset.flown == 2", timeout=SECONDS)
+    assert page.get_attribute(row, "class") == "flown"
+
+
 def test_flights_without_memory_say_so(opened, city):
     page = opened(live(city, *ENDS, planners=["A*"], flights=20))
     page.evaluate("window.grow = WebAssembly.Memory.prototype.grow, null")

@@ -27,7 +27,7 @@ from uavlab.plot.style import (
     plain,
 )
 from uavlab.spline import Curve
-from uavlab.spline.curve import BANK, CONTACT
+from uavlab.spline.curve import BANK, contact_distance
 from uavlab.spline.limits import MAX_PITCH
 from uavlab.vehicle import GRAVITY
 
@@ -199,7 +199,7 @@ def corner(
             axes.plot(*way.points[:, :2].T, "--", color=BLACK, linewidth=1.2, label=label_of(way))
         axes.add_collection(PolyCollection(list(swept(curve, uav_diameter)), facecolor=BLUE, alpha=0.35))
         axes.plot(*curve.points[:, :2].T, color=BLUE, label=f"curve and its body of {uav_diameter:g} m")
-        touches = np.append(curve.least_distances(city, uav_diameter) < (1 - CONTACT) * uav_diameter / 2, False)
+        touches = np.append(curve.least_distances(city, uav_diameter) < contact_distance(uav_diameter), False)
         axes.plot(*np.where(touches[:, None], curve.points, np.nan)[:, :2].T, color=ORANGE, linewidth=4,
                   label="touches an obstacle")  # fmt: skip
         axes.plot(*curve.control[:, :2].T, "o", color=BLACK, markersize=4, label="control points")

@@ -55,7 +55,7 @@ ANSWERS = (
 )  # fmt: skip
 """Where answers stand in `facts`: a route's cost, expanded nodes, voxels within reach where there is no way, nodes that
 are recorded, how a walk or a flight ended, its logged steps, least distance to obstacles [m], energy used [J], and
-of a curve the greatest curvature on the plan [1/m] the speed [m/s] at which
+of a curve the greatest curvature on the plan [1/m], the speed [m/s] at which
 a bank angle holds it, and the greatest climb or descent, as a share of the way."""
 
 

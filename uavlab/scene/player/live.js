@@ -248,6 +248,7 @@ function playLive(stage, planners, live, buffer) {
     emptied(objects.flights);
     for (const cross of crosses.splice(0)) cross.element.remove();
     for (const row of document.querySelectorAll("#offers .flown")) {  // counts stay to be compared with the next
+      if (!row.dataset.crashed && !row.classList.contains("before")) row.textContent = "";  // it wasn't through
       row.classList.add("before");
       delete row.dataset.crashed;
     }
@@ -356,6 +357,7 @@ function playLive(stage, planners, live, buffer) {
   function crossAt(place, words) {
     const element = drawn("crash", live.crash);
     element.classList.add("crash");
+    element.style.display = "none";  // until it is put in its place
     element.appendChild(document.createElementNS(element.namespaceURI, "title")).textContent = words;
     return {place, element};
   }
