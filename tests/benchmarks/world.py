@@ -4,7 +4,8 @@ Each row is one kind of question, asked of both sides in turn in one run, with a
 exact. The ratio is the peer's total time to ours, its interval the bootstrap over questions; a clock of processor time
 runs around the call alone. Peers that aren't installed are listed as such. Then the same city in ever finer voxels
 shows how the cost grows. Run it as `python tests/benchmarks/world.py`; `--write` puts the page into
-`tests/benchmarks/WORLD.md` and the picture into `notebooks/figures/benchmarks.png`; `--quick` asks fewer questions.
+`tests/benchmarks/WORLD.md`, its short form into README and the picture into `notebooks/figures/benchmarks.png`;
+`--quick` asks fewer questions.
 """
 
 from __future__ import annotations
@@ -46,6 +47,7 @@ from uavlab.plot import colors
 from uavlab.risk import random_campus
 
 PAGE = Path(__file__).with_name("WORLD.md")
+README = Path(__file__).parents[2] / "README.md"
 PICTURE = Path(__file__).parents[2] / "notebooks" / "figures" / "benchmarks.png"
 CELLS = (2.0, 1.0, 0.5, 0.25, 0.2)
 """Of Table 1's city, 100 m wide [m]: 50³ to 500³ voxels."""
@@ -69,6 +71,8 @@ class Peer(NamedTuple):
     name: str
     package: str
     measure: Callable[[bool], Measured]
+    alike: bool = True
+    """Whether both answer the same question and stop when they have the answer."""
 
 
 def searched(
@@ -146,12 +150,13 @@ PEERS = (
          priced(lambda city: penalty_zone(city, 3.5, penalty=2.0))),
     Peer("cheapest route, filtered noise", "scikit-image MCP_Geometric", "scikit-image",
          priced(lambda city: smooth_price(city.shape, 2022))),
-    Peer("any angle, OMPL has 1 s", "OMPL RRT*", "ompl", lambda quick: any_angle("RRTstar", quick)),
-    Peer("any angle, OMPL has 1 s", "OMPL Informed RRT*", "ompl", lambda quick: any_angle("InformedRRTstar", quick)),
-    Peer("any angle, OMPL has 1 s", "OMPL BIT*", "ompl", lambda quick: any_angle("BITstar", quick)),
+    Peer("any angle, OMPL has 1 s", "OMPL RRT*", "ompl", lambda quick: any_angle("RRTstar", quick), False),
+    Peer("any angle, OMPL has 1 s", "OMPL Informed RRT*", "ompl",
+         lambda quick: any_angle("InformedRRTstar", quick), False),
+    Peer("any angle, OMPL has 1 s", "OMPL BIT*", "ompl", lambda quick: any_angle("BITstar", quick), False),
     Peer("route of least risk, campus of 5 m", "SciPy csgraph.dijkstra", "scipy", least_risks),
     Peer("particle swarm", "pyswarms", "pyswarms", swarms),
-    Peer("a flight in gusts", "RotorPy", "rotorpy", flights),
+    Peer("a flight in gusts", "RotorPy", "rotorpy", flights, False),
 )  # fmt: skip
 """All at the table."""
 
@@ -171,6 +176,11 @@ def ratio_of(measured: Measured) -> tuple[float, float, float]:
     drawn = measured.theirs[chosen].sum(axis=1) / measured.ours[chosen].sum(axis=1)
     low, high = np.quantile(drawn, [0.025, 0.975])
     return float(measured.theirs.sum() / measured.ours.sum()), float(low), float(high)
+
+
+def three_digits(number: float) -> str:
+    """A number to three digits, and no power of ten."""
+    return f"{float(f'{number:.3g}'):,.10g}".replace(",", " ")
 
 
 def version_of(package: str) -> str:
@@ -260,8 +270,8 @@ def page(rows: list[tuple[Peer, Measured | None]], grown: Growth, quick: bool) -
         ratio, low, high = ratio_of(measured)
         cells = [
             peer.question, peer.name, str(len(measured.ours)),
-            f"{1000 * measured.ours.mean():.3g}", f"{1000 * measured.theirs.mean():.3g}",
-            f"{ratio:.3g}", f"{low:.3g} to {high:.3g}", measured.answers,
+            *map(three_digits, (1000 * measured.ours.mean(), 1000 * measured.theirs.mean(), ratio)),
+            f"{three_digits(low)} to {three_digits(high)}", measured.answers,
         ]  # fmt: skip
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join([*lines, "", *growth_lines(grown)]) + "\n"
@@ -297,21 +307,47 @@ def picture(rows: list[tuple[Peer, Measured | None]]) -> Any:
     from matplotlib.figure import Figure
 
     known = [(peer, ratio_of(measured)) for peer, measured in rows if measured is not None]
-    known.sort(key=lambda row: row[1][0])
-    figure = Figure(figsize=(8.0, 0.42 * len(known) + 1.3), layout="constrained")
+    known.sort(key=lambda row: (row[0].alike, row[1][0]))
+    figure = Figure(figsize=(8.0, 0.42 * len(known) + 1.6), layout="constrained")
     axes = figure.subplots()
-    for place, (_, (ratio, low, high)) in enumerate(known):
-        axes.barh(place, ratio - 1, left=1, color=colors.styles(["uavlab"])[0].color, height=0.6)
+    look = {True: {"label": "the same question, the same cost to 0.3 %"},
+            False: {"label": "OMPL: at most 1 s, routes still longer; RotorPy: a finer model", "hatch": "///",
+                    "fill": False}}  # fmt: skip
+    color = colors.styles(["uavlab"])[0].color
+    for place, (peer, (ratio, low, high)) in enumerate(known):
+        axes.barh(place, ratio - 1, left=1, color=color, edgecolor=color, height=0.6, **look[peer.alike])
+        look[peer.alike]["label"] = "_once"
         axes.plot([low, high], [place, place], color="black", lw=1.5)
-        axes.annotate(f"{ratio:.3g}", (max(ratio, high), place), (5, 0), textcoords="offset points", va="center")
+        axes.annotate(three_digits(ratio), (max(ratio, high), place), (5, 0), textcoords="offset points", va="center")
     axes.set_xscale("log")
+    axes.xaxis.set_major_formatter("{x:g} ×")
     axes.axvline(1, color="black", lw=1)
     axes.set_yticks(range(len(known)), [f"{peer.name}\n{peer.question}" for peer, _ in known], fontsize=8)
     axes.set_xlim(min(0.5, *(row[1][1] for row in known)), 4 * max(row[1][2] for row in known))
-    axes.set_xlabel("how many times as long it takes as uavlab (logarithmic; lines: intervals of 95 %)")
-    axes.set_title("The world's planners beside uavlab: the same questions, one thread", fontsize=10)
+    axes.set_xlabel("time that it takes, in times that of uavlab (logarithmic; black lines: intervals of 95 %)")
+    axes.set_title("Other people's libraries beside uavlab, one thread", fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
+    figure.legend(loc="outside lower left", ncols=2, fontsize=8, frameon=False)
     return figure
+
+
+def in_short(rows: list[tuple[Peer, Measured | None]]) -> Iterator[str]:
+    """The table of README."""
+    yield "| question | beside | times ours | 95 % | answers |"
+    yield "|---|---|---|---|---|"
+    for peer, measured in rows:
+        if measured is not None:
+            ratio, low, high = map(three_digits, ratio_of(measured))
+            yield f"| {peer.question} | {peer.name} | {ratio} | {low} to {high} | {measured.answers} |"
+
+
+def put_in_short(rows: list[tuple[Peer, Measured | None]]) -> None:
+    """Write the table of README anew."""
+    text = README.read_text(encoding="utf-8")
+    table = list(in_short(rows))
+    begin = text.index(table[0])
+    end = text.index("\n\n", begin)
+    README.write_text(text[:begin] + "\n".join(table) + text[end:], encoding="utf-8")
 
 
 def main() -> None:
@@ -325,6 +361,7 @@ def main() -> None:
     print(text)
     if options.write:
         PAGE.write_text(text, encoding="utf-8")
+        put_in_short(rows)
         picture(rows).savefig(PICTURE, dpi=110)
 
 

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from uavlab.city import Building, City, LazyCity, NoFlyZone, Terrain, table1_buildings
-from uavlab.city.lazy import WHOLE
-from uavlab.planners import potential_field, theta_star
+from uavlab.city.lazy import WHOLE, distance_to_corner_box
+from uavlab.planners import astar, potential_field, theta_star
+from uavlab.risk import RiskMap
 from uavlab.route import Route
+from uavlab.storage import save
 
 
 def bodies(rng, origin, size, cell):
@@ -99,6 +101,91 @@ def test_far_from_everything_distances_are_found_in_windows_that_grow():
     assert nothing.is_free((1, 1, 1))
 
 
+@pytest.mark.parametrize("terrain", [None, 2.5])
+@pytest.mark.parametrize(
+    "point", [(50, 50, 300), (50, 50, 5000), (1000, 50, 5), (-3000, -3000, -3000), (50, -90, 61.5), (50, 50, 1)]
+)
+def test_distances_off_the_map_are_finite_and_right(terrain, point):
+    tower = Building.prism([(40, 40), (60, 40), (60, 60), (40, 60)], 30)
+    options = {"origin": (0, 0, 0), "size": (100, 100, 60), "terrain": terrain}
+    plain, lazy = (City.from_buildings([tower], **options, lazy=each) for each in (False, True))
+    assert float(lazy.distance(point)) == pytest.approx(float(plain.distance(point, exact_within=1e9)), abs=1e-9)
+    end = np.add(point, (37.0, -11.0, 5.0))
+    assert float(lazy.segment_distance(point, end)) == pytest.approx(
+        float(plain.segment_distance(point, end)), abs=1e-9
+    )
+
+
+def test_far_from_level_ground_its_plane_is_the_nearest():
+    town = city_of_twelve_billion(terrain=2.5)
+    assert float(town.distance((9000, 9000, 2000))) == 1997.0  # the voxel that the ground reaches into
+    assert float(town.segment_distance((9000, 9000, 400), (9900, 5000, 300))) == 297.0
+    assert float(town.segment_distance((9000, -2000, 1), (9900, -900, 1))) == 900.0
+
+
+def test_a_long_line_takes_the_least_of_its_pieces():
+    rng = np.random.default_rng(5)
+    town = City.from_buildings(table1_buildings(), origin=(0, 0, 0), size=(2000, 2000, 120), lazy=True)
+    plain = City.from_buildings(table1_buildings(), origin=(0, 0, 0), size=(130, 130, 120))
+    start, end = rng.uniform(-3000, 3000, (2, 20, 3)) * (1, 1, 0.02) + (0, 0, 60)
+    assert np.allclose(town.segment_distance(start, end), plain.segment_distance(start, end), rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_distance_to_a_box(seed):
+    rng = np.random.default_rng(seed)
+    high = rng.integers(1, 9, 3).astype(float)
+    start, end = rng.uniform(-12, 20, (2, 3))
+    if seed % 3 == 0:
+        end[rng.integers(3)] = start[rng.integers(3)]
+    if seed == 1:
+        end = start
+    points = start + np.linspace(0, 1, 200_001)[:, None] * (end - start)
+    sampled = np.linalg.norm(points - np.clip(points, 0, high), axis=1).min()
+    assert distance_to_corner_box(start, end, high) == pytest.approx(sampled, abs=1e-6)
+
+
+def test_clearances_of_any_size_are_those_of_the_whole_map():
+    tower = Building.prism([(140, 140), (160, 140), (160, 160), (140, 160)], 30)
+    plain, lazy = (
+        City.from_buildings([tower], origin=(0, 0, 0), size=(300, 300, 60), lazy=each) for each in (False, True)
+    )
+    for clearance in (39.5, 40.0, 40.5, 100.0):
+        blocked = lazy.blocked_window((64, 64), (64, 64), clearance, 0.0, np.inf)
+        assert np.array_equal(blocked, plain.blocked(clearance)[64:128, 64:128]), clearance
+
+
+@pytest.mark.parametrize("min_clearance", [257.0, 3000.0, 1e9])
+def test_more_clearance_than_windows_can_hold_is_refused(min_clearance):
+    town = city_of_twelve_billion()
+    for ask in (
+        lambda: town.random_pairs(1, 1, min_clearance=min_clearance),
+        lambda: astar(town, (1000.5, 1000.5, 50.5), (3000.5, 3000.5, 50.5), min_clearance=min_clearance),
+    ):
+        with pytest.raises(
+            ValueError, match=r"min_clearance of .* m is more than 256 voxels, too much for a lazy city"
+        ):
+            ask()
+
+
+def test_a_small_lazy_city_can_be_made_plain():
+    small = City.from_buildings(table1_buildings(), lazy=True)
+    with pytest.raises(ValueError, match="or make the city without lazy=True"):
+        _ = small.occupied
+    with pytest.raises(ValueError, match="or make the city with a larger cell"):
+        _ = city_of_twelve_billion().occupied
+
+
+def test_what_makes_lazy_cities_and_what_can_t_be_done_with_one_is_said(tmp_path):
+    with pytest.raises(ValueError, match=r"extent is missing: make a lazy city by City\.from_buildings"):
+        LazyCity(1.0)
+    with pytest.raises(ValueError, match="thing must be a plain City: read or make a lazy one anew"):
+        save(city_of_twelve_billion(), tmp_path / "town.npz")
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(ValueError, match="a risk map needs all"):
+        RiskMap(city_of_twelve_billion(), 1e-3, 0.5)
+
+
 @pytest.mark.parametrize("seed", range(60, 70))
 def test_a_part_is_a_plain_city_of_the_same_voxels(seed):
     plain, lazy, rng = both(seed)
@@ -116,8 +203,9 @@ def test_a_part_is_a_plain_city_of_the_same_voxels(seed):
         lazy.part(at, margin=1.0)
 
 
-def city_of_twelve_billion():
-    return City.from_buildings(table1_buildings(), origin=(0, 0, 0), size=(10_000, 10_000, 120), lazy=True)
+def city_of_twelve_billion(terrain=None):
+    size = (10_000, 10_000, 120)
+    return City.from_buildings(table1_buildings(), origin=(0, 0, 0), size=size, terrain=terrain, lazy=True)
 
 
 @pytest.mark.parametrize("name", WHOLE)

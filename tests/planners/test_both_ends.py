@@ -204,3 +204,32 @@ def test_bits_around_a_voxel_are_those_of_its_box(height):
     for k in range(height):
         box = blocked[1:4, 2:5, k : k + 3].ravel()
         assert around_in(bits, 1, 2, k) == sum(1 << n for n in np.flatnonzero(box).tolist()), k
+
+
+@pytest.mark.parametrize(
+    ("start", "min_clearance"),
+    [((250, 250, 5), 0.0), ((110, 250, 5), 60.0), ((136, 136, 5), 5.0), ((399.5, 250.5, 59.5), 0.0)],
+)
+def test_the_nearest_free_point_is_found_however_large_the_building(start, min_clearance):
+    hall = Building.prism([(100, 100), (400, 100), (400, 400), (100, 400)], 60, name="hall")
+    messages = []
+    for lazy in (False, True):
+        city = City.from_buildings([hall], origin=(0, 0, 0), size=(500, 500, 60), lazy=lazy)
+        with pytest.raises(ValueError, match=r"start .* lies in building 'hall'; the nearest free point is") as error:
+            astar(city, start, (10, 10, 5), min_clearance=min_clearance)
+        messages.append(str(error.value))
+    assert messages[0] == messages[1]
+
+
+def test_a_start_in_a_zone_without_end_is_told_how_far_it_was_looked():
+    zone = NoFlyZone([(1000, 1000), (9000, 1000), (9000, 9000), (1000, 9000)], name="centre")
+    house = Building.prism([(40, 40), (60, 40), (60, 60), (40, 60)], 30)
+    city = City.from_buildings([house], origin=(0, 0, 0), size=(10_000, 10_000, 120), lazy=True, no_fly=[zone])
+    with pytest.raises(ValueError, match="lies in no-fly zone 'centre'; no voxel within 256 m of it is free"):
+        astar(city, (5000, 5000, 50), (10, 10, 50))
+    full = City.from_buildings(
+        [Building.prism([(-9, -9), (200, -9), (200, 200), (-9, 200)], 90)],
+        origin=(0, 0, 0), size=(100, 100, 60), lazy=True,
+    )  # fmt: skip
+    with pytest.raises(ValueError, match="no voxel of the map is free"):
+        astar(full, (50, 50, 50), (10, 10, 50))

@@ -26,25 +26,26 @@ from uavlab.city.extent import (
     locked,
 )
 from uavlab.city.model import City
-from uavlab.city.near import near_voxels, reaches_of
+from uavlab.city.near import WIDEST, near_voxels, reaches_of
 from uavlab.city.numbering import MOST_PAIRS, TRIES, whole_numbers
 from uavlab.city.place import Place
 from uavlab.city.rasterise import Window, mark_ground, rasterise
 from uavlab.city.segments import runs_of, segment_distances
 from uavlab.city.source import Source
+from uavlab.city.voxels import least_kept, put_clearance
 from uavlab.city.zones import NoFlyZone
 
 TILE = 64
 """Lines are looked at in pieces of so many cells, together with others that are near."""
 
-FAR = 256
-"""Farther away [cells], buildings are looked at one by one."""
+MARGINS = (16, 64)
+"""Obstacles are looked for within so many cells, all at once; farther away building by building, the nearest first."""
 
 ENDLESS = 2.0**40
 """No distance is more [cells]."""
 
-FIRST_MARGIN = 16
-"""Obstacles are looked for within so many cells first, then within four times as many, and so on."""
+MOST_KEPT = 256
+"""More min_clearance [cells] is refused: what surrounds a block of columns would be hundreds of millions of voxels."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -95,6 +96,8 @@ class LazyCity(City):
     level: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
+        if np.array_equal(self.extent, (0, 0, 0)):
+            raise ValueError("extent is missing: make a lazy city by City.from_buildings(..., lazy=True)")
         counts = whole_numbers("extent", self.extent)
         if counts.shape != (3,) or counts.min() < 1:
             raise ValueError(f"extent must be three whole numbers of at least 1, got {self.extent!r}")
@@ -148,6 +151,20 @@ class LazyCity(City):
         return shapely.STRtree(shapely.box(*low.T, *high.T) if self.buildings else [])
 
     @cached_property
+    def boxes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest corners of what buildings occupy [cells], and up to a voxel more, (N, 3) each."""
+        low, high = (np.array([building.bounds[n] for building in self.buildings]).reshape(-1, 3) for n in (0, 1))
+        return (low - self.origin) / self.cell - 1.0, (high - self.origin) / self.cell + 1.0
+
+    @cached_property
+    def solid(self) -> np.ndarray:
+        """Number of voxels along x, y and z that the ground fills, (3,), from the corner of the map."""
+        column = np.zeros((1, 1, self.shape[2]), dtype=bool)
+        if self.level is not None:
+            mark_ground(column, np.full((1, 1), self.level), self.cell, self.origin[2])
+        return np.array([*self.shape[:2], np.count_nonzero(column)], float)
+
+    @cached_property
     def zones(self) -> tuple[Building, ...]:
         """No-fly zones as bodies."""
         return tuple(self.zone_building(zone) for zone in self.no_fly)
@@ -171,14 +188,12 @@ class LazyCity(City):
         self, first: tuple[int, int], count: tuple[int, int], min_clearance: float, min_height: float, max_height: float
     ) -> np.ndarray:
         """`City.blocked` of the columns from `first` on, which must lie on the map, (*count, nz) bool."""
-        blocked = np.zeros((*count, self.shape[2]), dtype=bool)
-        reaches = reaches_once(min_clearance, self.cell, max(self.shape)) if min_clearance > 0 else np.zeros((1, 1))
-        low = np.maximum(np.array(first) - (len(reaches) - 1), 0)
-        high = np.minimum(np.array(first) + count + (len(reaches) - 1), self.shape[:2])
+        check_kept(self, min_clearance)
+        reach = int(np.ceil(min_clearance / self.cell)) + 1
+        low, high = np.maximum(np.array(first) - reach, 0), np.minimum(np.array(first) + count + reach, self.shape[:2])
         occupied = self.window((int(low[0]), int(low[1])), (int(high[0] - low[0]), int(high[1] - low[1])))
-        near = near_voxels(occupied, reaches) if min_clearance > 0 else occupied
         i, j = np.array(first) - low
-        blocked |= near[i : i + count[0], j : j + count[1]]
+        blocked = nearer_than(occupied, min_clearance, self.cell)[i : i + count[0], j : j + count[1]].copy()
         for zone in self.zones:
             rasterise(zone.hulls, blocked, self.cell, self.origin, "touched", Window(first, self.shape[:2]))
         levels, ground = self.coordinates(2), self.range_of_ground[0][0, 0]
@@ -318,7 +333,7 @@ class LazyCity(City):
             share = (np.arange(len(of)) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[of]
             step = (ends - starts) / pieces[:, None]
             begin = starts[of] + share[:, None] * (ends - starts)[of]
-            np.minimum.at(least, of, piece_distances(self, begin, begin + step[of], least[of]))
+            lower_distances(self, begin, begin + step[of], of, least)
         return self.cell * least.reshape(shape)
 
     def random_pairs(
@@ -341,47 +356,44 @@ class LazyCity(City):
         )
 
 
-def piece_distances(city: LazyCity, starts: np.ndarray, ends: np.ndarray, at_most: np.ndarray) -> np.ndarray:
-    """Distances [cells] of short lines (N, 3), at most (N,), from windows that grow until they are certain."""
-    found, margin = at_most.copy(), float(FIRST_MARGIN)
+def lower_distances(city: LazyCity, starts: np.ndarray, ends: np.ndarray, of: np.ndarray, least: np.ndarray) -> None:
+    """Lower the distances [cells] of lines (M,) to those of their short pieces (N, 3), piece n of line `of[n]`."""
     left = np.arange(len(starts))
-    while len(left):
-        if margin > FAR and city.level is None:
-            found[left] = [far_distance(city, starts[n], ends[n], at_most[n]) for n in left]
-            return found
+    for margin in MARGINS:
         tiles = np.floor((starts[left, :2] + ends[left, :2]) / 2 / TILE).astype(np.int64)
         _, group = np.unique(tiles, axis=0, return_inverse=True)
-        for n in range(group.max() + 1):
+        far = []
+        for n in range(group.max(initial=-1) + 1):
             here = left[group.ravel() == n]
-            found[here] = distances_within(city, starts[here], ends[here], np.minimum(at_most[here], margin))
-        left = left[(found[left] >= margin) & (found[left] < np.inf) & (at_most[left] > margin)]
-        margin *= 4
-    return found
+            bound = np.minimum(least[of[here]], margin)
+            found = near_distances(city, starts[here], ends[here], bound)
+            np.minimum.at(least, of[here], np.where(found < bound, found, np.inf))
+            far.append(here[found >= margin])
+        left = np.concatenate([*far, left[:0]])
+        left = left[least[of[left]] > margin]
+    for n in left.tolist():
+        least[of[n]] = far_distance(city, starts[n], ends[n], least[of[n]])
 
 
-def distances_within(city: LazyCity, starts: np.ndarray, ends: np.ndarray, at_most: np.ndarray) -> np.ndarray:
-    """Distances [cells] of lines near each other, from one window; at_most (N,), infinite beyond all that is."""
+def near_distances(city: LazyCity, starts: np.ndarray, ends: np.ndarray, at_most: np.ndarray) -> np.ndarray:
+    """Distances [cells] of lines near each other, from one window; at_most (N,) where nothing is nearer."""
     corners = np.concatenate([starts[:, :2], ends[:, :2]])
     reach = at_most.max() + 1.0
     first = np.clip(np.floor(corners.min(axis=0) - reach).astype(np.int64), 0, np.array(city.shape[:2]) - 1)
     last = np.clip(np.ceil(corners.max(axis=0) + reach).astype(np.int64), first + 1, city.shape[:2])
-    count = (int(last[0] - first[0]), int(last[1] - first[1]))
-    if count[0] * count[1] * city.shape[2] > MOST_VOXELS:
-        refuse(city, f"a distance of more than {city.cell * at_most.max() / 4:g} m")
-    runs = runs_of(city.window((int(first[0]), int(first[1])), count))
+    corner, count = (int(first[0]), int(first[1])), (int(last[0] - first[0]), int(last[1] - first[1]))
+    if city.level is None and not city.buildings_over(corner, count):
+        return at_most
     offset = np.array([*first, 0.0])
-    found = segment_distances(runs, starts - offset, ends - offset, at_most)
-    everything = count == city.shape[:2] and reach > np.linalg.norm(city.shape)
-    return np.where(everything & (found >= at_most), np.inf, found)
+    return segment_distances(runs_of(city.window(corner, count)), starts - offset, ends - offset, at_most)
 
 
 def far_distance(city: LazyCity, start: np.ndarray, end: np.ndarray, at_most: float) -> float:
-    """Distance [cells] of a line that is far from all buildings: one after the other, the nearest boxes first."""
-    low, high = (np.array([building.bounds[n] for building in city.buildings]) for n in (0, 1))
-    low, high = (low - city.origin) / city.cell - 1.0, (high - city.origin) / city.cell + 1.0  # a voxel more
+    """Distance [cells] of a line that is far from all obstacles: one after the other, the nearest boxes first."""
+    low, high = city.boxes
+    least = at_most if city.level is None else min(at_most, distance_to_corner_box(start, end, city.solid))
     apart = np.maximum(np.maximum(low - np.maximum(start, end), np.minimum(start, end) - high), 0.0)
     lower = np.linalg.norm(apart, axis=1)
-    least = at_most
     for n in np.argsort(lower, kind="stable"):
         if lower[n] >= least:
             break
@@ -394,6 +406,21 @@ def far_distance(city: LazyCity, start: np.ndarray, end: np.ndarray, at_most: fl
         found = float(segment_distances(runs, (start - offset)[None], (end - offset)[None], np.array([bound]))[0])
         least = found if found < bound else least
     return least
+
+
+def distance_to_corner_box(start: np.ndarray, end: np.ndarray, high: np.ndarray) -> float:
+    """Least distance of a straight line to the box from (0, 0, 0) to `high`, infinite if that is flat."""
+    if high.min() <= 0:
+        return np.inf
+    with np.errstate(divide="ignore", invalid="ignore"):
+        faces = np.concatenate([-start, high - start]) / np.tile(end - start, 2)
+    shares = np.unique(np.clip([0.0, 1.0, *faces[np.isfinite(faces)]], 0.0, 1.0))
+    points = start + shares[:, None] * (end - start)
+    gaps = points - np.clip(points, 0.0, high)  # a straight line between any two shares
+    steps = np.diff(gaps, axis=0)
+    squares = np.sum(steps**2, axis=1)
+    share = np.clip(-np.sum(gaps[:-1] * steps, axis=1) / np.where(squares > 0, squares, 1.0), 0.0, 1.0)
+    return float(np.linalg.norm(gaps[:-1] + share[:, None] * steps, axis=1).min())
 
 
 def is_blocked(city: LazyCity, index: np.ndarray, min_clearance: float) -> bool:
@@ -410,6 +437,24 @@ def lazy_city(
     return LazyCity(cell, corner, tuple(buildings), name, reference, None, no_fly, source, extent=extent, level=level)
 
 
+def check_kept(city: LazyCity, min_clearance: float) -> None:
+    """`ValueError` if windows can't hold what is so near [m] to a block."""
+    if min_clearance > MOST_KEPT * city.cell:
+        raise ValueError(
+            f"min_clearance of {min_clearance:g} m is more than {MOST_KEPT} voxels, too much for a lazy city: ask for "
+            "less, or make the city with a larger cell"
+        )
+
+
+def nearer_than(occupied: np.ndarray, min_clearance: float, cell: float) -> np.ndarray:
+    """Which voxels (nx, ny, nz) are less than `min_clearance` [m] from occupied ones of them."""
+    if min_clearance <= WIDEST * cell:
+        return near_voxels(occupied, reaches_once(min_clearance, cell)) if min_clearance > 0 else occupied
+    clearance = np.empty(occupied.shape)
+    put_clearance(occupied, cell, clearance)
+    return clearance < least_kept(min_clearance, cell)
+
+
 WHOLE = (
     "occupied", "clearance", "runs", "wall_normal", "surface_below", "height_above_surface", "in_no_fly",
     "blocked", "out_of_heights", "towards_wall", "clearance_along",
@@ -419,10 +464,22 @@ WHOLE = (
 
 def refuse(city: LazyCity, what: str) -> NoReturn:
     """`ValueError` for what would need everything."""
+    count = int(np.prod(city.shape, dtype=np.int64))
+    cure = "make the city without lazy=True" if count <= MOST_VOXELS else "make the city with a larger cell"
     raise ValueError(
-        f"{what} needs all {int(np.prod(city.shape, dtype=np.int64)):,} voxels of {city.name!r}, more than fit into "
-        "memory: take city.part(around=..., margin=...), a plain City, or make the city with a larger cell"
+        f"{what} needs all {count:,} voxels of {city.name!r}, which a lazy city never has at once: take "
+        f"city.part(around=..., margin=...), a plain City, or {cure}"
     )
 
 
-reaches_once = lru_cache(8)(reaches_of)
+def check_plain(city: City, what: str) -> None:
+    """`ValueError` unless it is a city that has all of its voxels at once."""
+    checks.instance("city", city, City)
+    if isinstance(city, LazyCity):
+        refuse(city, what)
+
+
+@lru_cache(8)
+def reaches_once(min_clearance: float, cell: float) -> np.ndarray:
+    """`reaches_of` a distance that is asked for block by block."""
+    return reaches_of(min_clearance, cell, WIDEST + 2)

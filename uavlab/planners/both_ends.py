@@ -40,7 +40,7 @@ from uavlab.planners.lazy_search import (
     voxel_of,
     way_to,
 )
-from uavlab.planners.question import Airspace
+from uavlab.planners.question import Airspace, blocked_columns
 from uavlab.route import Route
 
 FIRST_TURN = 20_000
@@ -191,12 +191,9 @@ def make_block(question: Question) -> bool:
         min((a + 1) * BLOCK + 1, city.shape[0]) - low[0],
         min((b + 1) * BLOCK + 1, city.shape[1]) - low[1],
     )
-    clearance = airspace.promises["min_clearance"]
     blocked = np.ones((BLOCK + 2, BLOCK + 2, city.shape[2] + 2), dtype=bool)  # so is what lies off the map
     i, j = low[0] - (a * BLOCK - 1), low[1] - (b * BLOCK - 1)
-    blocked[i : i + count[0], j : j + count[1], 1:-1] = city.blocked_window(
-        low, count, clearance, airspace.min_height, airspace.max_height
-    )
+    blocked[i : i + count[0], j : j + count[1], 1:-1] = blocked_columns(airspace, city, np.array(low), count)
     blocks.bits[made + 1] = bits_of(blocked)
     blocks.number[a, b] = made + 1
     return True
