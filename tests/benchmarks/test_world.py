@@ -36,8 +36,8 @@ def test_an_exponent_is_found_again(grown):
 
 def test_costs_apart():
     assert world.costs_apart(np.array([1.0, 2.0]), np.array([1.0, 2.0 + 1e-12])) == "of equal cost"
-    assert world.costs_apart(np.array([1.0, 1.0]), np.array([1.0, 1.1])) == "5 % dearer there"
-    assert world.costs_apart(np.array([1.0, 1.0]), np.array([1.0, 0.9])) == "5 % cheaper there"
+    assert world.costs_apart(np.array([1.0, 1.0]), np.array([1.0, 1.1])) == "5 % more there"
+    assert world.costs_apart(np.array([1.0, 1.0]), np.array([1.0, 0.9])) == "5 % less there"
 
 
 def test_the_page_has_ratios_and_what_is_missing(rows, grown, monkeypatch):
@@ -57,6 +57,27 @@ def test_the_picture_has_a_bar_for_each_that_is_there(rows):
     assert [bar.get_width() for bar in axes.patches] == [9.0]
     assert axes.get_xscale() == "log"
     assert [label.get_text() for label in axes.get_yticklabels()] == ["somebody\na question"]
+
+
+def test_numbers_have_three_digits_and_no_power_of_ten():
+    assert [world.three_digits(number) for number in (1083.2, 23456.7, 0.012345, 2.0, 26.94)] == [
+        "1 080", "23 500", "0.0123", "2", "26.9",
+    ]  # fmt: skip
+
+
+def test_readme_has_the_table_of_the_page(rows, tmp_path, monkeypatch):
+    page, readme = world.PAGE.read_text(encoding="utf-8"), world.README.read_text(encoding="utf-8")
+    measured = [[cell.strip() for cell in line.split("|")[1:-1]] for line in page.splitlines() if line.startswith("| ")]
+    kept = [f"| {' | '.join([*row[:2], *row[5:]])} |" for row in measured if len(row) == 8 and row[6]]
+    assert len(kept) > len(world.PEERS) / 2
+    begin = readme.index("| question | beside |")
+    assert readme[begin : readme.index("\n\n", begin)].splitlines()[2:] == kept[2:]
+    other = tmp_path / "README.md"
+    other.write_text(f"before\n\n{readme[begin:]}", encoding="utf-8")
+    monkeypatch.setattr(world, "README", other)
+    world.put_in_short(rows)
+    assert "before\n\n| question | beside |" in other.read_text(encoding="utf-8")
+    assert "| a question | somebody | 10 | 10 to 10 | of equal cost |\n\n![" in other.read_text(encoding="utf-8")
 
 
 def test_a_question_is_asked_of_both_sides():

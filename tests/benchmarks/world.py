@@ -116,7 +116,11 @@ def least_risks(quick: bool) -> Measured:
     results = [against_scipy(random_campus(seed), QUESTIONS["risk"]) for seed in range(1, 3 if quick else 11)]
     mine = np.array([result["seconds"] for result in results])
     apart = max(result["apart"] for result in results)
-    return Measured(mine, mine * [result["scipy times"] for result in results], f"equal to {apart:.0e}")
+    return Measured(
+        mine,
+        mine * [result["scipy times"] for result in results],
+        "of equal risk" if apart < 1e-9 else f"{apart:.0e} apart",
+    )
 
 
 def swarms(quick: bool) -> Measured:
@@ -164,9 +168,7 @@ PEERS = (
 def costs_apart(mine: np.ndarray, theirs: np.ndarray) -> str:
     """By how much the peer's total is dearer."""
     more = theirs.sum() / mine.sum() - 1
-    return (
-        "of equal cost" if abs(more) < 1e-9 else f"{100 * abs(more):.2g} % {'dearer' if more > 0 else 'cheaper'} there"
-    )
+    return "of equal cost" if abs(more) < 1e-9 else f"{100 * abs(more):.2g} % {'more' if more > 0 else 'less'} there"
 
 
 def ratio_of(measured: Measured) -> tuple[float, float, float]:
@@ -260,7 +262,7 @@ def page(rows: list[tuple[Peer, Measured | None]], grown: Growth, quick: bool) -
         "thread. The ratio is the peer's total time to ours; intervals are of 95 %, by the bootstrap over questions. "
         "What a peer can prepare for a map (a graph, a grid of nodes) is prepared outside of the clock.",
         "",
-        "| question | peer | questions | ours [ms] | theirs [ms] | times ours | 95 % | answers |",
+        "| question | peer | questions | ours [ms] | theirs [ms] | times ours | 95 % | cost of the answers |",
         "| --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
     for peer, measured in rows:
@@ -310,7 +312,7 @@ def picture(rows: list[tuple[Peer, Measured | None]]) -> Any:
     known.sort(key=lambda row: (row[0].alike, row[1][0]))
     figure = Figure(figsize=(8.0, 0.42 * len(known) + 1.6), layout="constrained")
     axes = figure.subplots()
-    look = {True: {"label": "the same question, the same cost to 0.3 %"},
+    look = {True: {"label": "the same question or formulas, equal cost to 0.3 %"},
             False: {"label": "OMPL: at most 1 s, routes still longer; RotorPy: a finer model", "hatch": "///",
                     "fill": False}}  # fmt: skip
     color = colors.styles(["uavlab"])[0].color
@@ -327,13 +329,14 @@ def picture(rows: list[tuple[Peer, Measured | None]]) -> Any:
     axes.set_xlabel("time that it takes, in times that of uavlab (logarithmic; black lines: intervals of 95 %)")
     axes.set_title("Other people's libraries beside uavlab, one thread", fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
-    figure.legend(loc="outside lower left", ncols=2, fontsize=8, frameon=False)
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles[::-1], labels[::-1], loc="outside lower left", ncols=2, fontsize=8, frameon=False)
     return figure
 
 
 def in_short(rows: list[tuple[Peer, Measured | None]]) -> Iterator[str]:
     """The table of README."""
-    yield "| question | beside | times ours | 95 % | answers |"
+    yield "| question | beside | times ours | 95 % | cost of the answers |"
     yield "|---|---|---|---|---|"
     for peer, measured in rows:
         if measured is not None:
