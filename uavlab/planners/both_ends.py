@@ -120,10 +120,10 @@ def route_on_lazy(airspace: Airspace, source: int, target: int, heuristic: str) 
 
 def gave_up(expanded: int, known: float, proven: float) -> str:
     """Words for a search that ran out of memory; costs [m] of a route that is known and of what is proven."""
-    way = "" if known == np.inf else f" of {known:.1f} m is known, but"
+    way = f"a route of {known:.1f} m is known, but not proven to be cheapest" if known < np.inf else "no route is known"
     return (
-        f"a route{way} none is proven to be cheapest after {expanded:,} voxels, for which there is memory; it has at "
-        f"least {proven:.1f} m: ask for a greater max_height or less min_clearance, or take city.part(...)"
+        f"{way} after {expanded:,} voxels, for which there is memory; the cheapest has at least {proven:.1f} m: ask "
+        "for a greater max_height or less min_clearance, or take city.part(...)"
     )
 
 
