@@ -385,7 +385,8 @@ def slow(x):
 
 def test_a_signal_as_of_ctrl_c_leaves_a_file_to_go_on_from(rows):
     program = f"""
-import sys
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have started the tests without
 sys.path.insert(0, {str(Path(__file__).parent)!r})
 from test_sweep_files import slow
 from uavlab.sweep import sweep
