@@ -35,11 +35,11 @@ class Failure:
     >>> import warnings
     >>> from uavlab.sweep import Failure, sweep
     >>> with warnings.catch_warnings(action="ignore"):
-    ...     results = sweep(int, [{"x": 1}], progress=False)
+    ...     results = sweep(pow, [{"base": 2, "exp": -1, "mod": mod} for mod in (4, 5)], progress=False)
     >>> results
-    [<Failure of case 0: TypeError: 'x' is an invalid keyword argument for int()>]
+    [<Failure of case 0: ValueError: base is not invertible for the given modulus>, 3]
     >>> [result for result in results if not isinstance(result, Failure)]
-    []
+    [3]
     """
 
     case: Mapping[str, Any]
