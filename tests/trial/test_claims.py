@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from uavlab.trial import CLAIMS, VERDICTS, Claim, Experiment, Finding, Measured, agree, verdict
+from uavlab.trial import CLAIMS, VERDICTS, Claim, Experiment, Finding, Measured, agree, by_campuses, verdict
 from uavlab.trial.running import experiments, measure
 
 CHAPTERS = {path.name[:2] for path in (Path(__file__).parents[2] / "notebooks/src").glob("[0-9][0-9]_*.py")}
@@ -161,3 +161,8 @@ def test_only_findings_of_one_claim_are_compared():
     assert not agree(one, Finding.of(one.claim, Measured(1, 1, 1, "some"), ""))
     with pytest.raises(ValueError, match="other must be of the same claim"):
         agree(one, other)
+
+
+def test_no_limits_of_tilt_would_let_the_curves_be_flown():
+    """So that a verdict on them doesn't hang on the limits of our UAV, as the claim's reason says."""
+    assert by_campuses.curves(10, 0)["least press"].value > 3

@@ -188,6 +188,8 @@ NEVER_JUDGED = [
     ("REPARE", "Table 2: A* over the field, lattice, weak"), ("REPARE", "Section 2.2.3, Fig. 4: XGBClassifier"),
     ("RISK-ACO", "Table 5: a campus like the paper's"), ("RISK-ACO", "Section 3.2: turns"),
     ("PSO-BAS", "Fig. 10: 55 iterations"), ("REPARE", "Table 2: work of REPARE over A*"),
+    ("RISK-ACO", "Table 4: risk"), ("RISK-ACO", "Table 5: on most maps"), ("PSO-BAS", "Table 4: where wrecks land"),
+    ("REPARE", "Section 2.3.2: field safer than A*, lattice, weak"), ("REPARE", "Section 2.2.3: three accuracies"),
 ]  # fmt: skip
 
 
@@ -215,6 +217,16 @@ def test_samples_have_the_size_and_the_seed_that_are_asked_for(full, size):
     claim = replace(CLAIMS[0], experiment=Experiment(size_and_seed, 3, 8, 5), of="size")
     (found,) = run_trial([claim], full=full, progress=False)
     assert found.measured == (size, size, size, "seed 5")
+
+
+def broken(size, seed):
+    raise ZeroDivisionError("no wind")
+
+
+def test_an_experiment_that_fails_says_so():
+    claim = replace(CLAIMS[0], experiment=Experiment(broken), of="size")
+    with pytest.raises(ZeroDivisionError, match="no wind"):
+        run_trial([claim], progress=False)
 
 
 README = STORED.parents[1] / "README.md"

@@ -12,6 +12,7 @@ from uavlab.route import Route
 from uavlab.spline import Curve, feasibility
 from uavlab.trial.judging import Measured
 from uavlab.trial.measures import exact, percent, statistic_of
+from uavlab.vehicle import GRAVITY
 
 LENGTHS = {"RISK-ACO": 152.39 / 141.85, "PSO-BAS": 156.74 / 136.48}
 """Of the route that knows the risk over the one that doesn't, as printed."""
@@ -69,8 +70,12 @@ def curves(size: int, seed: int) -> dict[str, Measured]:
     bends = {name: [5.0 * getattr(curve, of).max() < 1 for _, curve in drawn] for name, of in BENDS.items()}
     able = [feasibility(curve, town.city, town.uav).feasible for town, curve in drawn]
     limits = {"pitch 60": steep < 60, "pitch 45": steep < 45 - 1e-6, "flown": able}
-    return {name: percent(met, f"{size} random campuses") for name, met in (bends | limits).items()}
+    press = [TABLE_2_SPEED**2 * curve.level_curvature.max() / GRAVITY for _, curve in drawn]
+    found = {name: percent(met, f"{size} random campuses") for name, met in (bends | limits).items()}
+    return found | {"least press": exact(min(press), f"times the weight, {size} random campuses")}
 
 
+TABLE_2_SPEED = 16.0
+"""[m/s]"""
 BENDS = {"in plan": "level_curvature", "in 3 D": "curvature"}
 """Two readings of a curve's curvature [1/m]; a coding unit is a voxel of 5 m."""

@@ -13,7 +13,7 @@ from uavlab.flight import PERFECT_GPS, Autopilot, Flights, OffsetProcess, crash_
 from uavlab.planners import astar, potential_field, repare
 from uavlab.resilience import LOADS, ConditionCheck, Monitor, safe_distance
 from uavlab.route import Route
-from uavlab.trial.by_routes import nearest, papers_city
+from uavlab.trial.by_routes import FIELDS, UNFITTED, nearest, papers_city
 from uavlab.trial.judging import Measured
 from uavlab.trial.measures import fewer, percent
 from uavlab.vehicle import LIGHT_QUADROTOR
@@ -64,21 +64,22 @@ def each(runs: Sequence[Flights]) -> np.ndarray:
 def in_gusts(size: int, seed: int) -> dict[str, Measured]:
     """A*, the potential field and REPARE in the offsets of mild and of heavy wind."""
     pairs = blocked_pairs(size, seed)
-    plain, field = ([plan(papers_city(), *pair) for pair in pairs] for plan in (astar, potential_field))
-    there = np.flatnonzero([route.reached for route in field])
-    careful = [repare(papers_city(), *pair) for pair in pairs]
+    plain, careful = ([plan(papers_city(), *pair) for pair in pairs] for plan in (astar, repare))
+    fields = {name: [potential_field(papers_city(), *pair, **FIELDS[name]) for pair in pairs] for name in UNFITTED}
+    there = {name: np.flatnonzero([route.reached for route in field]) for name, field in fields.items()}
     found: dict[str, Measured] = {}
     for wind in ("mild", "heavy"):
         sigma = (safe_distance("light", wind) - UAV.diameter / 2) / 3
         own = [repare(papers_city(), *pair, disturbance=wind) for pair in pairs]
-        a, f, r = (flown(routes, sigma) for routes in (plain, field, own))
-        found |= {f"A* crashes, {wind}": crashes(a, "routes"), f"field crashes, {wind}": crashes(f, "routes")}
-        found |= {f"REPARE crashes, {wind}": crashes(r, "routes")}
+        a, r = (flown(routes, sigma) for routes in (plain, own))
+        found |= {f"A* crashes, {wind}": crashes(a, "routes"), f"REPARE crashes, {wind}": crashes(r, "routes")}
         found[f"REPARE safer, {wind}"] = fewer(each(r), each(a), f"{size} pairs")
-        found[f"field safer, {wind}"] = fewer(each(f), each(a)[there], f"{len(there)} pairs")
-    ours, theirs = (nearest([routes[n] for n in there]) for routes in (careful, field))
-    found["smaller margin"] = fewer(ours, theirs, f"{len(there)} pairs where the field arrives")
-    found["field fails"] = percent([not route.reached for route in field], f"{size} pairs")
+        for name, field in fields.items():
+            sample = f"{len(there[name])} pairs where the field arrives"
+            found[f"field safer, {wind}, {name}"] = fewer(each(flown(field, sigma)), each(a)[there[name]], sample)
+    for name, field in fields.items():
+        ours, theirs = (nearest([routes[n] for n in there[name]]) for routes in (careful, field))
+        found[f"smaller margin, {name}"] = fewer(ours, theirs, f"{len(there[name])} pairs where the field arrives")
     return found
 
 

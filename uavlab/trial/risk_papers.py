@@ -14,6 +14,9 @@ SPLITS, TABLE_5 = Experiment(by_colonies.splits, 6, 30, 100), Experiment(by_colo
 PRINTED, OURS = Experiment(by_swarms.as_printed, 3, 12), Experiment(by_swarms.ours, 3, 12)
 FUNCTIONS = Experiment(by_swarms.functions, 8, 15)
 
+FUNCTION_NAMES = "sphere", "rosenbrock", "rastrigin"
+NOT_SETTLED = "They make up for a swarm that doesn't settle."
+TOO_FEW = "Once a swarm settles, what they change is small against what chance does."
 NOT_IN_TEXT = "The figures aren't in the text that we have."
 
 ant = partial(Claim, paper="RISK-ACO")
@@ -39,8 +42,8 @@ RISK_ACO = [
     ),
     ant(
         item="Section 3.2: turns", chapter="10", printed="100", line=50.0, unit="% of routes",
-        says="no turn exceeds π/3", why="Such moves are closed to our ants, so it can't fail.", experiment=TABLE_5,
-        of="turns", fair=False,
+        says="no turn exceeds π/3", why="A rule of the search and no result: such moves are closed to the ants.",
+        experiment=TABLE_5, of="turns", fair=False,
     ),
     ant(
         item="Eqs 14 to 16: choice and update", chapter="10",
@@ -49,17 +52,19 @@ RISK_ACO = [
     ),
     ant(
         item="Eq. 17, Table 3: limits", chapter="10", line=50.0, unit="% of runs",
-        says="limits of the pheromone keep the search from an early end: it improves after generation 10 of 100",
+        says="limits of the pheromone keep the search from an early end: it improves after generation "
+        "10 of 100 (line: in half of the runs, ours)",
         why="With Table 3 the upper limit isn't reached and the lower one is 0.", experiment=LIMITS, of="still better",
     ),
     ant(
         item="Section 3.4, Fig. 12: splits, risk", chapter="10", line=50.0, unit="% of runs",
         says="a route that is searched in parts has less risk (against as many ants in one part)",
-        why="A shorter way is easier for ants that don't see the risk.", experiment=SPLITS, of="better",
+        why="Of each part the best is picked by its risk; the ants themselves choose by length.",
+        experiment=SPLITS, of="better",
     ),
     ant(
         item="Fig. 12: splits, time", chapter="10", says="time grows with the splits",
-        why="It is the number of ants, which one chooses.",
+        why="Time is what one gives: as many ants can walk in one part or in many.",
     ),
     *smoothing("RISK-ACO"),
     *flyable("RISK-ACO"),
@@ -71,10 +76,10 @@ RISK_ACO = [
         why="Redundancy isn't defined, and the figures aren't in the text that we have.",
     ),
     ant(
-        item="Table 4: risk", chapter="10", line=0.0, unit="% less risk",
-        says="the improved colony finds less than the basic one; its 21 % can't be checked, as basic isn't defined",
-        why="By our guess (no height, any turn); neither sees the risk when it chooses.", experiment=HABITS,
-        of="less risk",
+        item="Table 4: risk", chapter="10", printed="21", line=0.0, unit="% less risk",
+        says="the improved colony finds less risk than the basic one",
+        why="Basic isn't defined; by our guess it sees no height and makes any turn.", experiment=HABITS,
+        of="less risk", fair=False,
     ),
     ant(
         item="Table 4: time", chapter="10", says="7.67 s against 8.12 s",
@@ -88,14 +93,14 @@ RISK_ACO = [
     ),
     ant(
         item="Fig. 13: hardware", chapter="14", says="multirotor, autopilot, radio, ground station",
-        why="Mass, speed, loss and delay aren't given.",
+        why="Mass and control, and what the radio loses, aren't given.",
     ),
     ant(
         item="Fig. 14: photographs", chapter="14", says="in flight and landing", why=NOT_IN_TEXT,
     ),
     ant(
         item="Fig. 15: a safe flight", chapter="14", line=50.0, unit="% of flights",
-        says="flights on the route are safe (line: half of them)", why="One flight says next to nothing.",
+        says="flights on the route are safe (line: half of them, ours)", why="One flight says next to nothing.",
         experiment=ONE_FLIGHT, of="safe",
     ),
 ]  # fmt: skip
@@ -118,7 +123,7 @@ PSO_BAS = [
     bas(
         item="Eqs 13 to 16, Table 3: swarm", chapter="11",
         says="settings of the swarm: inertia ω = 1, pulls c1 + c2 = 3.5",
-        why="Bounds and a greatest speed aren't given, and without them the swarm spreads.",
+        why="Settings are no claim; what they do is judged in the rows on beetles.",
     ),
     bas(
         item="Eq. 17: random direction", chapter="11", line=1.0, side="equal", unit="of the even share",
@@ -128,7 +133,7 @@ PSO_BAS = [
     bas(
         item="Eq. 18: distance of the antennae", chapter="11", line=1.0, side="equal", unit="of d",
         says="d is the distance between the tips of both antennae", experiment=ANTENNAE, of="length", fair=False,
-        why="In our text it is half of that; the equation's indices are misread there, so a halving may be lost, too.",
+        why="In our text the tips are twice as far apart; indices are misread there, so a halving may be lost, too.",
     ),
     bas(
         item="Eqs 19 to 21: steps", chapter="11", says="antennae and step shrink",
@@ -140,11 +145,11 @@ PSO_BAS = [
             says=f"antennae improve a swarm on a test function, {settings}", why=why, experiment=FUNCTIONS,
             of=f"{name}, {how}",
         )
-        for how, settings, why in (
-            ("printed", "with Table 3", "They make up for a swarm that doesn't settle."),
-            ("ours", "with our settings", "A swarm that settles has better use for the evaluations."),
+        for how, settings, name, why in (
+            *(("printed", "with Table 3 and bounds of ours", name, NOT_SETTLED) for name in FUNCTION_NAMES),
+            ("ours", "with settings that settle", "sphere", "A swarm that settles has better use for the evaluations."),
+            *(("ours", "with settings that settle", name, TOO_FEW) for name in FUNCTION_NAMES[1:]),
         )
-        for name in ("sphere", "rosenbrock", "rastrigin")
     ),
     *smoothing("PSO-BAS"),
     *flyable("PSO-BAS"),

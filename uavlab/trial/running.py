@@ -55,6 +55,8 @@ def run_trial(
     ValueError
         If `claims` is empty or has something else in it, an experiment doesn't answer, `full` is not True or False,
         or `jobs` or `progress` is what `sweep` refuses.
+    Exception
+        What an experiment raises; a note says which.
 
     See Also
     --------
@@ -72,7 +74,7 @@ def run_trial(
     full = checks.flag("full", full)
     each = experiments(claims)
     cases = [{"experiment": one, "full": full} for one in each]
-    results = sweep(measure, cases, jobs=jobs, progress=progress, unit="experiment")
+    results = sweep(measure, cases, jobs=jobs, on_error="raise", progress=progress, unit="experiment")
     found = {id(one): result for one, result in zip(each, results, strict=True)}
     used, findings = versions(), []
     for claim in claims:

@@ -158,8 +158,9 @@ def verdict_figure(findings: Sequence[Finding]) -> Figure:
     for name, (marker, color) in LOOKS.items():
         if any(one.verdict == name for one in drawn):
             panels[0].plot([], [], marker, color=color, label=name)
+    panels[0].plot([], [], "-", color="black", linewidth=2, label="interval, in the verdict's colour")
     panels[0].plot([], [], "|", color="black", markersize=10, label="the paper's number")
-    panels[0].plot([], [], "-", color=GOOD, linewidth=8, label="good side")
+    panels[0].plot([], [], "-", color=GOOD, linewidth=8, label="the claim's side of its line")
     return with_legend(panels[0])
 
 
@@ -175,8 +176,8 @@ class Scale(NamedTuple):
 
 
 SCALES = {
-    "percent": Scale("percentages", "measured [%]", 0.0, 100.0, (0, 25, 50, 75, 100)),
-    "number": Scale("printed numbers", "measured over the paper's number (linear axis)", 0.9, 1.1,
+    "percent": Scale("percentages", "measured [%], of what the table says", 0.0, 100.0, (0, 25, 50, 75, 100)),
+    "number": Scale("numbers that are printed", "measured over the paper's number (linear axis)", 0.9, 1.1,
                     (0.9, 0.95, 1.0, 1.05, 1.1)),
     "ratio": Scale("formulas and ratios without a printed number", "measured over the line (logarithmic axis)", 0.1,
                    10.0, (0.1, 0.2, 0.5, 1, 2, 5, 10), logarithmic=True),
@@ -205,7 +206,7 @@ def draw_row(axes: Axes, row: int, finding: Finding, scale: Scale) -> None:
         return
     claim, (marker, color) = finding.claim, LOOKS[finding.verdict]
     low, high = good_side(claim, scale)
-    axes.barh(row, high - low, left=low, height=0.8, color=GOOD, zorder=0)
+    axes.barh(row, high - low, left=low, height=0.8, color=GOOD, edgecolor=GOOD, linewidth=2, zorder=0)
     if claim.number is not None:
         axes.plot(claim.number / over(claim), row, "|", color="black", markersize=11, zorder=2, clip_on=False)
     measured = np.array(finding.measured[:3]) / over(claim)
@@ -239,7 +240,8 @@ def dress(axes: Axes, part: Sequence[Finding], scale: Scale) -> None:
     axes.set(title=f"{papers}: {scale.title}", xlabel=scale.label, ylim=(len(part) - 0.4, -0.6))
     if scale.logarithmic:
         axes.set_xscale("log")
-    axes.set_xlim(scale.least, scale.most)
+    beyond = 0.0 if scale.logarithmic else 0.02 * (scale.most - scale.least)  # room for a number at the end
+    axes.set_xlim(scale.least - beyond, scale.most + beyond)
     axes.set_xticks(scale.ticks, [f"{tick:g}" for tick in scale.ticks])
     axes.minorticks_off()
     axes.set_yticks(range(len(part)), [plain(one.claim.item) for one in part], fontsize=8.5)

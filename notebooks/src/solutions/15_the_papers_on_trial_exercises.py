@@ -56,7 +56,8 @@ exercises.check("15.1", choice)
 # %% [markdown] tags=["solution"]
 # The interval leaves open all from "no gain" to "37 % less". So the direction isn't shown. But 80 lies far outside of
 # it. By the rule of the chapter the verdict is *not shown*, as the line comes first. These are the numbers of RISK-ACO's
-# Table 5 with the wreck where it really lands.
+# Table 5 with the wreck where it really lands. (The paper says nothing of other maps than its own, nor of such wrecks, so
+# its row in the chapter can't be checked. The exercise supposes that a paper does.)
 
 # %% [markdown]
 # ## 15.2 How many safe flights?
