@@ -150,6 +150,8 @@ PEERS = (
     Peer("shortest route, 100³ voxels", "SciPy csgraph.dijkstra", "scipy", searched(scipy_dijkstra)),
     Peer("shortest route, 100³ voxels", "scikit-image MCP_Geometric", "scikit-image", searched(scikit_image)),
     Peer("shortest route, 100³ voxels", "dijkstra3d, compass", "dijkstra3d", searched(dijkstra3d_compass)),
+    Peer("the same, ours without an estimate", "SciPy csgraph.dijkstra", "scipy",
+         searched(scipy_dijkstra, lambda city: ours(city, heuristic="zero"))),
     Peer("cheapest route, REPARE's zone", "scikit-image MCP_Geometric", "scikit-image",
          priced(lambda city: penalty_zone(city, 3.5, penalty=2.0))),
     Peer("cheapest route, filtered noise", "scikit-image MCP_Geometric", "scikit-image",
@@ -308,40 +310,37 @@ def picture(rows: list[tuple[Peer, Measured | None]]) -> Any:
     """Ratios with intervals, the longest first."""
     from matplotlib.figure import Figure
 
-    known = [(peer, ratio_of(measured)) for peer, measured in rows if measured is not None]
-    known.sort(key=lambda row: (row[0].alike, row[1][0]))
-    figure = Figure(figsize=(8.0, 0.42 * len(known) + 1.6), layout="constrained")
+    known = [(peer, ratio_of(measured)) for peer, measured in rows if measured is not None and peer.alike]
+    known.sort(key=lambda row: row[1][0])
+    figure = Figure(figsize=(8.0, 0.42 * len(known) + 1.3), layout="constrained")
     axes = figure.subplots()
-    look = {True: {"label": "the same question or formulas, equal cost to 0.3 %"},
-            False: {"label": "OMPL: at most 1 s, routes still longer; RotorPy: a finer model", "hatch": "///",
-                    "fill": False}}  # fmt: skip
     color = colors.styles(["uavlab"])[0].color
-    for place, (peer, (ratio, low, high)) in enumerate(known):
-        axes.barh(place, ratio - 1, left=1, color=color, edgecolor=color, height=0.6, **look[peer.alike])
-        look[peer.alike]["label"] = "_once"
-        axes.plot([low, high], [place, place], color="black", lw=1.5)
-        axes.annotate(three_digits(ratio), (max(ratio, high), place), (5, 0), textcoords="offset points", va="center")
+    for place, (_, (ratio, low, high)) in enumerate(known):
+        axes.plot([low, high], [place, place], color=color, lw=2)
+        axes.plot(ratio, place, "o", color=color)
+        axes.annotate(three_digits(ratio), (max(ratio, high), place), (6, 0), textcoords="offset points", va="center")
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter("{x:g} ×")
     axes.axvline(1, color="black", lw=1)
+    axes.annotate("as fast", (1, len(known) - 0.5), (4, 0), textcoords="offset points", fontsize=8)
     axes.set_yticks(range(len(known)), [f"{peer.name}\n{peer.question}" for peer, _ in known], fontsize=8)
-    axes.set_xlim(min(0.5, *(row[1][1] for row in known)), 4 * max(row[1][2] for row in known))
-    axes.set_xlabel("time that it takes, in times that of uavlab (logarithmic; black lines: intervals of 95 %)")
-    axes.set_title("Other people's libraries beside uavlab, one thread", fontsize=10)
+    axes.set_xlim(min(0.7, *(row[1][1] for row in known)), 4 * max(row[1][2] for row in known))
+    axes.set_xlabel("time that it takes, in times that of uavlab (logarithmic; lines: intervals of 95 %)")
+    axes.set_title("Other people's libraries beside uavlab: the same questions, one thread", fontsize=10)
+    axes.grid(visible=True, axis="x", alpha=0.4)
     axes.spines[["top", "right"]].set_visible(False)
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles[::-1], labels[::-1], loc="outside lower left", ncols=2, fontsize=8, frameon=False)
     return figure
 
 
 def in_short(rows: list[tuple[Peer, Measured | None]]) -> Iterator[str]:
-    """The table of README."""
-    yield "| question | beside | times ours | 95 % | cost of the answers |"
-    yield "|---|---|---|---|---|"
+    """The table of README: those that answer the same question and stop when they have the answer."""
+    yield "| question | beside | ours [ms] | times ours | 95 % | cost of the answers |"
+    yield "|---|---|---|---|---|---|"
     for peer, measured in rows:
-        if measured is not None:
+        if measured is not None and peer.alike:
             ratio, low, high = map(three_digits, ratio_of(measured))
-            yield f"| {peer.question} | {peer.name} | {ratio} | {low} to {high} | {measured.answers} |"
+            ours = three_digits(1000 * measured.ours.mean())
+            yield f"| {peer.question} | {peer.name} | {ours} | {ratio} | {low} to {high} | {measured.answers} |"
 
 
 def put_in_short(rows: list[tuple[Peer, Measured | None]]) -> None:
