@@ -172,8 +172,11 @@ def one_round(
     tasks: Iterator[Any] = (task(function, dict(cases[number]), number, marks) for number in numbers)
     if way == "packed":
         tasks = (task(packed_or_not(function, cases[number]), number, marks) for number in numbers)
+    if isinstance(backend, LokyBackend):  # it starts them all at once; and one alone would be this process
+        jobs = min(joblib.effective_n_jobs(jobs), max(len(numbers), 2))
     if backend.supports_return_generator:
-        results = joblib.Parallel(n_jobs=jobs, return_as="generator_unordered")(tasks)
+        # a case may change its own arrays, in memory of its own if they come as files
+        results = joblib.Parallel(n_jobs=jobs, return_as="generator_unordered", mmap_mode="c")(tasks)
     else:
         results = in_blocks(tasks, jobs)
     try:
