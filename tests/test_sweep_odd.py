@@ -496,6 +496,15 @@ def test_a_failure_inside_a_result_is_a_result_without_a_file_and_refused_with_o
             run(inner, CASES[1:2], to=rows)
 
 
+@pytest.mark.parametrize("x", [1, 2, 3, 4])
+def test_failures_of_a_sweep_within_a_case_come_back_from_other_processes(x):
+    inner = functools.partial(nested, function=failing)
+    with warnings.catch_warnings(action="ignore"):
+        here, there = run(inner, [{"x": x}]), run(inner, [{"x": x}], jobs=2)
+    assert repr(here) == repr(there)
+    assert there[0][1] == 0
+
+
 def nested(x, function):
     return run(function, [{"x": x}, {"x": 0}])
 

@@ -50,6 +50,10 @@ class Failure:
     def __repr__(self) -> str:
         return f"<Failure of case {self.number}: {described(self.exception):.100}>"
 
+    def __reduce__(self) -> tuple[Any, ...]:  # one of a sweep within a case travels, too
+        exception = portable(Failed(self.exception, "", "")).exception
+        return Failure, (self.case, exception, self.number, self.traceback)
+
 
 class WorkerLostError(RuntimeError):
     """The process that ran a case ended again and again: killed, out of memory, or by a fault in compiled code.
