@@ -180,13 +180,10 @@ def one_round(
     else:
         results = in_blocks(tasks, jobs)
     try:
-        if way != "packed":
-            yield from results
-            return
-        for number, content in results:
-            if content is None:
+        for number, value in results:  # `yield from` would close them before their warnings are ignored
+            if way == "packed" and value is None:
                 packed(function, cases[number], number)  # raises
-            yield number, opened(content)
+            yield number, opened(value) if way == "packed" else value
     finally:
         with warnings.catch_warnings(action="ignore"):  # joblib warns of results that nobody takes
             results.close()
