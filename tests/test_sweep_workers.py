@@ -203,3 +203,21 @@ def test_a_cluster_of_one_core_does_not_run_cases_here(tmp_path):
     """joblib would, as it does for one process: what kills its worker would kill the caller."""
     with dask(workers=1):
         assert os.getpid() not in sweep(lambda x: os.getpid(), [{"x": x} for x in range(5)], progress=False)
+
+
+def leaving(x, kind):
+    if x == 3:
+        raise kind
+    return x
+
+
+@pytest.mark.parametrize("place", [dask, ray])
+def test_what_is_no_error_but_leaves_a_function_does_not_stop_a_cluster(place):
+    """Dask and Ray waited for ever for a case that ended so; of Ctrl-C in one, Dask's workers died."""
+    with place():
+        with pytest.warns(RuntimeWarning, match=r"^1 of 6 cases failed \(3\)"):
+            results = sweep(leaving, [{"x": x, "kind": GeneratorExit} for x in range(6)], progress=False)
+        assert isinstance(results[3].exception, GeneratorExit)
+        with pytest.raises(KeyboardInterrupt):
+            sweep(leaving, [{"x": x, "kind": KeyboardInterrupt} for x in range(6)], progress=False)
+        assert sweep(leaving, [{"x": x, "kind": None} for x in range(3)], progress=False) == [0, 1, 2]

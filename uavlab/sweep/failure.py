@@ -50,6 +50,10 @@ class Failure:
     def __repr__(self) -> str:
         return f"<Failure of case {self.number}: {described(self.exception):.100}>"
 
+    def __reduce__(self) -> tuple[Any, ...]:  # one of a sweep within a case travels, too
+        exception = portable(Failed(self.exception, "", "")).exception
+        return Failure, (self.case, exception, self.number, self.traceback)
+
 
 class WorkerLostError(RuntimeError):
     """The process that ran a case ended again and again: killed, out of memory, or by a fault in compiled code.
@@ -81,6 +85,10 @@ class UnpicklableError(ValueError, pickle.PicklingError):
     """
 
 
+class ForeignError(RuntimeError):
+    """An exception of another process that can't be made again in this one: its words alone."""
+
+
 class RemoteError(Exception):
     """The lines of another process, where an exception rose."""
 
@@ -105,12 +113,16 @@ def failed(error: BaseException) -> Failed:
 
 
 def portable(one: Failed) -> Failed:
-    """The same, with an exception that other processes can read: not all can be made again from what they hold."""
+    """The same, with an exception that other processes can read: not all can be made again from what they hold.
+
+    One that words its message itself would word it twice; so what is read must say the same.
+    """
+    text = described(one.exception)
     try:
-        pickle.loads(cloudpickle.dumps(one.exception))
+        same = described(pickle.loads(cloudpickle.dumps(one.exception))) == text
     except Exception:
-        return one._replace(exception=RuntimeError(described(one.exception)))
-    return one
+        same = False
+    return one if same else one._replace(exception=ForeignError(text))
 
 
 def without_frames(error: BaseException) -> BaseException:
@@ -123,19 +135,32 @@ def without_frames(error: BaseException) -> BaseException:
             continue
         seen.add(id(one))
         one.__traceback__ = None
-        chain += [one.__cause__, one.__context__]
+        chain += [one.__cause__, one.__context__, *getattr(one, "exceptions", ())]
     return error
 
 
 def described(error: BaseException) -> str:
     """An exception in one line: KeyError: 'nothing there'."""
-    text = traceback.format_exception_only(type(error), error)[0].removeprefix(f"{type(error).__module__}.")
-    return " ".join(text.split())
+    if type(error) is ForeignError:
+        return str(error)
+    try:
+        text = str(error)
+    except Exception:
+        text = "<exception str() failed>"
+    return " ".join(f"{type(error).__qualname__}{': ' * bool(text)}{text}".split())
 
 
 def words(case: Mapping[str, Any]) -> str:
     """A case for a message: x=3, name='much'."""
-    return ", ".join(f"{name}={value!r:.80}" for name, value in case.items())
+    return ", ".join(f"{name}={shown(value)}" for name, value in case.items())
+
+
+def shown(value: Any) -> str:
+    """The beginning of what a value says of itself; some say nothing but an error."""
+    try:
+        return f"{value!r:.80}"
+    except Exception:
+        return f"<{type(value).__name__}>"
 
 
 def ranges(numbers: Iterable[int]) -> str:

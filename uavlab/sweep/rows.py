@@ -14,12 +14,12 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, BinaryIO
 
 from uavlab import __version__
 from uavlab.files import written_whole
 from uavlab.sweep.failure import Failure, described, ranges, words
-from uavlab.sweep.values import KINDS, as_text, fingerprint, name_of, read
+from uavlab.sweep.values import KINDS, as_text, fingerprint, name_of, read, text_mark
 
 try:
     import fcntl
@@ -28,14 +28,19 @@ except ImportError:  # on Windows two sweeps with one file aren't told apart
 
 FORMAT = 1
 
+LONGEST = 100_000
+"""Bytes of a header: a line that is longer isn't one, and isn't read whole."""
+
 
 class NoRows:
     """Nothing is kept: a sweep without a file."""
 
     results: dict[int, Any]
+    remarks: list[str]
+    """What is to be said at the end."""
 
     def __init__(self) -> None:
-        self.results = {}
+        self.results, self.remarks = {}, []
 
     def __enter__(self) -> NoRows:
         return self
@@ -68,13 +73,17 @@ class Rows(NoRows):
     def __enter__(self) -> Rows:
         if self.path.exists() and not self.path.is_file():
             raise ValueError(f"to must be the name of a file that can be read again, got {str(self.path)!r}")
-        self.file = open(self.path, "a+b", buffering=0)
-        try:
-            self.lock()
-            self.read()
-        except BaseException:
-            self.file.close()
-            raise
+        for last in (False, False, True):  # as on some network disks no file is ever the one that was opened
+            self.file = open(self.path, "a+b", buffering=0)
+            try:
+                self.lock()
+                if last or self.is_in_place():
+                    self.read()
+                    return self
+            except BaseException:
+                self.file.close()
+                raise
+            self.file.close()  # since it was opened, another sweep has put its file there
         return self
 
     def __exit__(
@@ -93,34 +102,60 @@ class Rows(NoRows):
                 return  # some network disks have no locks
             raise ValueError(f"to: another sweep is writing to {self.path.name}: wait for it, or stop it") from error
 
+    def is_in_place(self) -> bool:
+        """Whether the file that is open is the one of that name: it may have been removed, or replaced."""
+        return self.path.exists() and os.path.samestat(os.fstat(self.file.fileno()), self.path.stat())
+
+    def again(self) -> BinaryIO:
+        """The open file, to be read from."""
+        return open(self.file.fileno(), "rb", closefd=False)
+
     def read(self) -> None:
         """Take the rows of a file; cut off a last line that isn't whole, as power cuts and full disks leave it."""
         self.file.seek(0)
-        first = self.file.readline()
+        first = self.file.readline(LONGEST)
         if not first.endswith(b"\n") and self.header.startswith(first):
             self.file.truncate(0)
             self.end = 0
             self.append(self.header)
             return
-        if first != self.header:
-            raise ValueError(f"to: {self.path.name} {why_another(first, self.header)}: take another name, or remove it")
+        if why := why_another(first, self.header):
+            raise ValueError(f"to: {self.path.name} {why}: take another name, or remove it")
         self.end = len(first)
-        with self.path.open("rb") as lines:
+        with self.again() as lines:
             lines.seek(self.end)
-            for line in lines:
+            for number, line in enumerate(lines, start=2):
                 if not self.took(line):
+                    if lines.readline():
+                        raise ValueError(
+                            f"to: {self.path.name} is damaged in line {number}, and more follow: remove that line, and "
+                            "its case runs again; or take another name"
+                        )
                     break
-            if rest := lines.readline():
-                raise ValueError(
-                    f"to: {self.path.name} is damaged at byte {self.end}, {len(rest)} bytes and more follow"
-                )
         self.file.truncate(self.end)
+        self.keep_header(first)
+
+    def keep_header(self, first: bytes) -> None:
+        """The header of the file stays, with the mark of the function's text, while it has results of that text."""
+        mark, mine = json.loads(first)["text"], json.loads(self.header)
+        if mark == mine["text"] or self.results:
+            self.header = first
+        else:
+            self.file.truncate(0)
+            self.places, self.end = {}, 0
+            self.append(self.header)
+        if self.results and None not in (mark, mine["text"]) and mark != mine["text"]:
+            count = f"{len(self.results)} result{'s are' if len(self.results) > 1 else ' is'}"
+            self.remarks.append(
+                f"{self.path.name} was begun with another text of {mine['sweep']}, and its {count} kept: to have them "
+                "anew, remove it"
+            )
 
     def took(self, line: bytes) -> bool:
         """Take a row, if it is whole."""
         try:
             row = json.loads(line) if line.endswith(b"\n") else {}
-        except ValueError:
+        except (ValueError, RecursionError):
             row = {}
         if not isinstance(row, dict) or not ("failed" in row) ^ ("result" in row):
             return False
@@ -157,16 +192,14 @@ class Rows(NoRows):
 
     def finish(self) -> None:
         """Bring the rows into the order of the cases."""
-        expected = len(self.header)
-        for number in range(self.count):
-            place, size = self.places[number]
-            if place != expected:
-                break
-            expected += size
-        else:
+        in_place = self.is_in_place()
+        if not in_place and self.path.exists():
+            self.remarks.append(f"{self.path.name} was replaced while the sweep ran: what came later isn't in it")
+            return
+        if in_place and self.is_ordered():
             return
         try:
-            with written_whole(self.path) as part, self.path.open("rb") as source, part.open("wb") as target:
+            with written_whole(self.path) as part, self.again() as source, part.open("wb") as target:
                 target.write(self.header)
                 for number in range(self.count):
                     place, size = self.places[number]
@@ -177,6 +210,16 @@ class Rows(NoRows):
         except OSError as error:
             text = f"{error.strerror}; the rows aren't in order yet, for which {self.path.name} is written once more"
             raise OSError(error.errno, f"{text}; {self}", str(self.path)) from error
+
+    def is_ordered(self) -> bool:
+        """Whether the rows are in the order of the cases, each once."""
+        expected = len(self.header)
+        for number in range(self.count):
+            place, size = self.places[number]
+            if place != expected:
+                return False
+            expected += size
+        return True
 
     def __str__(self) -> str:
         kept = [number for number, result in self.results.items() if not isinstance(result, Failure)]
@@ -207,7 +250,7 @@ def header_of(function: Callable[..., Any], cases: Sequence[Mapping[str, Any]]) 
     name = name_of(getattr(function, "func", function))
     digest, owners = hashlib.sha256(f"{name} {mark}".encode()), dict[str, int]()
     for number, case in enumerate(cases):
-        marks = [f"{key}: {told_apart(f'{key} of case {number}', case[key], seen)}" for key in sorted(case)]
+        marks = [f"{key}: {told_apart(f'{key} of case {number}', case[key], seen)}" for key in sorted(case, key=str)]
         one = hashlib.sha256("\n".join(marks).encode()).hexdigest()
         if (first := owners.setdefault(one, number)) != number:
             raise ValueError(
@@ -215,7 +258,10 @@ def header_of(function: Callable[..., Any], cases: Sequence[Mapping[str, Any]]) 
                 "seed of its own, or leave one out"
             )
         digest.update(one.encode())
-    says = {"uavlab": __version__, "format": FORMAT, "sweep": name, "cases": len(cases), "digest": digest.hexdigest()}
+    says = {
+        "uavlab": __version__, "format": FORMAT, "sweep": name, "cases": len(cases), "digest": digest.hexdigest(),
+        "text": text_mark(function),
+    }  # fmt: skip
     return json.dumps(says).encode() + b"\n"
 
 
@@ -232,7 +278,7 @@ def told_apart(name: str, value: Any, seen: dict[int, tuple[Any, str]] | None = 
 
 
 def why_another(first: bytes, header: bytes) -> str:
-    """What tells the first line of a file from the header of a sweep, in words."""
+    """What tells the first line of a file from the header of a sweep, in words; none for a file of the sweep."""
     mine = json.loads(header)
     try:
         says = json.loads(first)
@@ -243,4 +289,6 @@ def why_another(first: bytes, header: bytes) -> str:
         return f"is of version {theirs['uavlab']} (format {theirs['format']}), this is {__version__} (format {FORMAT})"
     if theirs["sweep"] != mine["sweep"]:
         return f"holds a sweep of {theirs['sweep']}, this is one of {mine['sweep']}"
+    if theirs["digest"] == mine["digest"] and first.endswith(b"\n"):
+        return ""
     return f"holds a sweep of {mine['sweep']} over other cases ({theirs['cases']}, these are {mine['cases']})"

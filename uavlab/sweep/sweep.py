@@ -8,11 +8,11 @@ from contextlib import closing
 from os import PathLike
 from typing import Any
 
-import numpy as np
 from tqdm import tqdm
 
 from uavlab import checks
 from uavlab.sweep.failure import Failed, Failure, RemoteError, described, ranges, without_frames, words
+from uavlab.sweep.generators import OwnGenerators
 from uavlab.sweep.rows import NoRows, Rows, header_of
 from uavlab.sweep.workers import finished
 
@@ -40,7 +40,8 @@ def sweep(
         For other processes, what it refers to must be data: no open files, locks or connections. Its results may
         depend on nothing but the case.
     cases : iterable of mappings
-        Keyword arguments of each call. What draws at random brings a seed, or a generator that no other case has.
+        Keyword arguments of each call. What draws at random brings a seed, or a generator that no other case has; it
+        draws from a copy of that, so that the same call gives the same results.
     jobs : int, optional
         Processes, −1 for one per core; at most 10,000. By default what `joblib.parallel_config` says, else 1. A cluster
         of Dask or Ray has as many as it has.
@@ -52,7 +53,7 @@ def sweep(
         once. The same call goes on from a file of that name: it runs only cases that are missing or that failed.
         Results that JSON can't hold exactly are arrays in base64, or dataclasses by their fields; nothing is pickled,
         so that a file of unknown origin can't run anything, though it can say what isn't so. The function counts by
-        its name: after a change of its code, remove the file.
+        its name; if its own text has changed, results are kept, and the warning says so.
     progress : bool
         Show a bar, with the time left.
     unit : str
@@ -68,19 +69,21 @@ def sweep(
     ValueError
         If `function` can't be called, `cases` are no mappings, `jobs` is 0, no whole number or above 10,000, `on_error`
         is unknown, `progress` is not True or False, `unit` is no text, or `to` is not the name of a file; if `cases`
-        share a random generator: what one of them draws would be missing in the next on one core, and not on two. With
-        several processes, if `function` or one of `cases` can't be pickled. With `to`, if two of `cases` are equal
-        (else they run twice), if `function` is a lambda, if `cases` hold what can't be told from others or results what
-        a file can't hold, and if the file is of another sweep or version, or damaged before its last line.
+        share a random generator, or `function` holds one: what one of them draws would be missing in the next on one
+        core, and not on two. With several processes, if `function` or one of `cases` can't be pickled. With `to`, if
+        two of `cases` are equal (else they run twice), if `function` is a lambda, if `cases` hold what can't be told
+        from others or results what a file can't hold, and if the file is of another sweep or version, or damaged before
+        its last line.
     OSError
         If `to` can't be written, as on a full disk. What was written before stays whole.
     Exception
-        With `on_error="raise"` what `function` raises; a note says in which case.
+        With `on_error="raise"` what `function` raises; a note says in which case. `KeyboardInterrupt` always.
 
     Warns
     -----
     RuntimeWarning
-        Once, at the end, if cases failed or workers died: how many, which, and why the first.
+        Once, at the end, if cases failed or workers died: how many, which, and why the first. And if the file was begun
+        with another text of `function`, or was replaced while the sweep ran.
 
     See Also
     --------
@@ -91,7 +94,7 @@ def sweep(
     Notes
     -----
     Dask runs cases of a dead worker on another one by itself. Without a worker it waits for one. A pool of Ray, or of
-    multiprocessing, gives results in blocks of some seconds.
+    multiprocessing, gives results in blocks of some seconds; that of multiprocessing waits for ever if a process dies.
 
     Examples
     --------
@@ -107,45 +110,41 @@ def sweep(
     checks.flag("progress", progress)
     checks.text("unit", unit)
     cases = checks.several("cases", cases, Mapping, least=0)
-    refuse_shared_generators(cases)
+    own = OwnGenerators(function, cases)
     rows = NoRows() if to is None else Rows(checks.path("to", to), header_of(function, cases), len(cases))
     losses: list[str] = []
     places: dict[int, str] = {}
-    try:
-        with rows:
-            missing = [number for number in range(len(cases)) if number not in rows.results]
+    with rows:
+        missing = [number for number in range(len(cases)) if number not in rows.results]
+        try:
             with (
-                tqdm(total=len(cases), initial=len(rows.results), unit=unit, disable=not progress) as bar,
-                closing(finished(function, cases, missing, jobs, losses)) as outcomes,
+                # the mean speed: a few cases that take long say little of those to come
+                tqdm(total=len(cases), initial=len(rows.results), unit=unit, disable=not progress, smoothing=0) as bar,
+                closing(finished(function, own, missing, jobs, losses)) as outcomes,
             ):
                 for number, result in outcomes:
                     if isinstance(result, Failed):
-                        if on_error == "raise":
-                            raise raised(result, cases[number])
                         places[number] = result.place
-                        result = Failure(cases[number], without_frames(result.exception), number, result.traceback)
+                        result = recorded(result, cases[number], number, on_error)
                     rows.add(number, result)
                     bar.update()
             rows.finish()
-    except BaseException as error:
-        if (to is not None or isinstance(error, KeyboardInterrupt)) and str(rows) not in str(error):
-            error.add_note(str(rows))
-        raise
+        except BaseException as error:
+            if (to is not None or isinstance(error, KeyboardInterrupt)) and str(rows) not in str(error):
+                error.add_note(str(rows))
+            raise
     results = [rows.results[number] for number in range(len(cases))]
-    warn_of(results, places, losses)
+    warn_of(results, places, losses, rows.remarks)
     return results
 
 
-def refuse_shared_generators(cases: list[Mapping[str, Any]]) -> None:
-    """Refuse cases of which two have the same random generator."""
-    owners: dict[int, int] = {}
-    for number, case in enumerate(cases):
-        for name, value in case.items():
-            if isinstance(value, np.random.Generator) and owners.setdefault(id(value), number) != number:
-                raise ValueError(
-                    f"cases {owners[id(value)]} and {number} share {name}, a random generator, so that results would "
-                    f"depend on where they run: give each a seed, or one of {name}.spawn({len(cases)})"
-                )
+def recorded(result: Failed, case: Mapping[str, Any], number: int, on_error: str) -> Failure:
+    """The failure of a case, unless it is to stop the sweep, as Ctrl-C always does."""
+    if isinstance(result.exception, KeyboardInterrupt):
+        raise result.exception
+    if on_error == "raise":
+        raise raised(result, case)
+    return Failure(case, without_frames(result.exception), number, result.traceback)
 
 
 def raised(result: Failed, case: Mapping[str, Any]) -> BaseException:
@@ -157,9 +156,9 @@ def raised(result: Failed, case: Mapping[str, Any]) -> BaseException:
     return error
 
 
-def warn_of(results: list[Any], places: dict[int, str], losses: list[str]) -> None:
+def warn_of(results: list[Any], places: dict[int, str], losses: list[str], remarks: list[str]) -> None:
     """One warning for all that went wrong."""
-    said = []
+    said = list(remarks)
     if places:
         first = results[number := min(places)]
         where = f" at {places[number]}" if places[number] else ""

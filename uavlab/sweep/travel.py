@@ -12,10 +12,13 @@ from uavlab.sweep.failure import Failed, UnpicklableError, described, failed, po
 
 
 def tried(function: Callable[..., Any], case: dict[str, Any], *, travels: bool) -> Any:
-    """What a function returns in a case, or how it failed."""
+    """What a function returns in a case, or how it failed.
+
+    Everything that it may raise: a cluster waits for ever for a case that ends with what is no `Exception`.
+    """
     try:
         return function(**case)
-    except (Exception, SystemExit) as error:
+    except BaseException as error:
         return portable(failed(error)) if travels else failed(error)
 
 

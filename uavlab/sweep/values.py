@@ -15,13 +15,17 @@ import json
 import math
 import sys
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from functools import cached_property, partial
+from pathlib import Path
 from typing import Any
 
 import joblib
 import numpy as np
+
+LONG = 14_000
+"""Bits of a whole number that Python makes no decimal digits of, nearly, as that takes long."""
 
 KINDS = "numbers, text, NumPy arrays, and lists, tuples, sets, dicts, dataclasses and named tuples of them"
 
@@ -37,8 +41,10 @@ def as_text(value: Any) -> str:
 def described(value: Any) -> Any:
     """A value as JSON has it."""
     kind = type(value)
-    if value is None or kind in (bool, int, str):
+    if value is None or kind in (bool, str):
         return value
+    if kind is int:
+        return value if value.bit_length() < LONG else {"!int": hex(value)}
     if kind is float:
         return value if math.isfinite(value) else {"!float": repr(value)}
     if kind is list:
@@ -75,15 +81,32 @@ def described_thing(value: Any) -> dict[str, Any]:
     """A dataclass or a named tuple: the name of its class, and its fields."""
     kind = type(value)
     name = f"{kind.__module__}:{kind.__qualname__}"
-    if class_of(name) is not kind:
+    if class_of(name) is not kind or not (is_named_tuple(kind) or is_plain(kind)):
         raise TypeError(f"a {kind.__name__}")
-    if is_named_tuple(kind):
-        return {"!thing": name, "fields": {key: described(getattr(value, key)) for key in kind._fields}}
-    names, held = [one.name for one in fields(value)], getattr(value, "__dict__", {})
-    cached = [key for key in held if isinstance(inspect.getattr_static(kind, key, None), cached_property)]
-    if more := set(held) - {*names, *cached}:
+    if more := beside_fields(value):
         raise TypeError(f"a {kind.__name__} with more than its fields, {', '.join(sorted(more))}")
-    return {"!thing": name, "fields": {key: described(getattr(value, key)) for key in names}}
+    return {"!thing": name, "fields": {key: described(getattr(value, key)) for key in field_names(kind)}}
+
+
+def field_names(kind: Any) -> list[str]:
+    """The fields of a dataclass or named tuple."""
+    return list(kind._fields) if is_named_tuple(kind) else [one.name for one in fields(kind)]
+
+
+def beside_fields(value: Any) -> dict[str, Any]:
+    """What a dataclass or named tuple holds beside its fields, but for what it can compute again."""
+    kind, held = type(value), getattr(value, "__dict__", {})
+    more = {key: held[key] for key in held if key not in field_names(kind)}
+    return {key: more[key] for key in more if not isinstance(inspect.getattr_static(kind, key, None), cached_property)}
+
+
+def is_plain(kind: type) -> bool:
+    """Whether a class is no list, exception or other thing whose content isn't in its fields."""
+    try:
+        object.__new__(kind)
+    except TypeError:
+        return False
+    return True
 
 
 def is_named_tuple(kind: type) -> bool:
@@ -132,6 +155,8 @@ def made(value: Any) -> Any:
         return complex(*map(made, content))
     if tag == "!bytes":
         return base64.b64decode(content)
+    if tag == "!int":
+        return int(content, 16)
     makers: dict[str, Callable[[Any], Any]] = {"!float": float, "!tuple": tuple, "!set": set, "!frozenset": frozenset}
     return makers[tag](made(content))
 
@@ -142,8 +167,7 @@ def made_thing(name: str, content: dict[str, Any]) -> Any:
     module, _, path = name.partition(":")
     if kind is None:
         raise ValueError(f"it holds a {path} of {module}: import {module} before")
-    known = kind._fields if is_named_tuple(kind) else [one.name for one in fields(kind)]
-    if list(known) != list(content):
+    if field_names(kind) != list(content):
         raise ValueError(f"it holds a {path} of another version of {module}, with {', '.join(content)}")
     if is_named_tuple(kind):
         return tuple.__new__(kind, content.values())
@@ -159,7 +183,9 @@ def fingerprint(value: Any, seen: dict[int, tuple[Any, str]]) -> str:
     `seen` remembers things by their id, as the cases of a sweep share large ones; and them, so that no other gets it.
     """
     kind = type(value)
-    if value is None or kind in (bool, int, float, complex, str, bytes):
+    if kind is int:
+        return f"int {value:x}"
+    if value is None or kind in (bool, float, complex, str, bytes):
         return f"{kind.__name__} {value!r}"
     if id(value) not in seen:
         seen[id(value)] = value, f"{kind.__name__} {hashlib.sha256(parts(value, seen).encode()).hexdigest()}"
@@ -168,12 +194,16 @@ def fingerprint(value: Any, seen: dict[int, tuple[Any, str]]) -> str:
 
 def parts(value: Any, seen: dict[int, tuple[Any, str]]) -> str:
     """What a thing is made of, in fingerprints."""
-    if isinstance(value, list | tuple):
+    kind = type(value)
+    if kind in (list, tuple):
         return " ".join(fingerprint(item, seen) for item in value)
-    if isinstance(value, Mapping):
+    if kind in (set, frozenset):
+        return " ".join(sorted(fingerprint(item, seen) for item in value))
+    if kind in (dict, types.MappingProxyType):
         return " ".join(sorted(f"{fingerprint(key, seen)}: {fingerprint(value[key], seen)}" for key in value))
-    if is_dataclass(value) and not isinstance(value, type):
-        return name_of(type(value)) + parts({one.name: getattr(value, one.name) for one in fields(value)}, seen)
+    if is_named_tuple(kind) or (is_dataclass(kind) and is_plain(kind)):
+        things = {key: getattr(value, key) for key in field_names(kind)} | beside_fields(value)
+        return name_of(kind) + parts(things, seen)
     if isinstance(value, np.random.Generator):
         sequence: Any = value.bit_generator.seed_seq
         return f"{parts(value.bit_generator.state, seen)} {sequence.n_children_spawned} {sequence!r}"
@@ -185,6 +215,7 @@ def parts(value: Any, seen: dict[int, tuple[Any, str]]) -> str:
         return f"{fingerprint(value.__self__, seen)} {value.__name__}"
     if isinstance(value, type | types.FunctionType | types.BuiltinFunctionType) or hasattr(value, "__wrapped__"):
         name, held = name_of(value), [cell.cell_contents for cell in getattr(value, "__closure__", None) or ()]
+        seen[id(value)] = value, f"itself {name}"  # as it may call itself
         if "<locals>" in name:  # of one name there may be several, which differ in what they were made with
             held += [getattr(value, "__defaults__", None), getattr(value, "__kwdefaults__", None)]
         return " ".join([name, *(fingerprint(item, seen) for item in held)])
@@ -193,7 +224,28 @@ def parts(value: Any, seen: dict[int, tuple[Any, str]]) -> str:
 
 def name_of(value: Any) -> str:
     """Module and name of a function or class; `TypeError` for a lambda, which has none."""
-    name = f"{getattr(value, '__module__', None)}.{getattr(value, '__qualname__', type(value).__qualname__)}"
+    module = getattr(value, "__module__", None)
+    name = f"{name_of_script() if module == '__main__' else module}."
+    name += getattr(value, "__qualname__", type(value).__qualname__)
     if "<lambda>" in name:
         raise TypeError("a lambda, of which nobody can tell whether it is the same: def it by a name")
     return name
+
+
+def name_of_script() -> str:
+    """What `__main__` is when it is imported: all scripts have that name."""
+    main = sys.modules["__main__"]
+    spec, file = getattr(main, "__spec__", None), getattr(main, "__file__", None)
+    return spec.name if spec else Path(file).stem if file else "__main__"
+
+
+def text_mark(function: Any) -> str | None:
+    """A mark of the text of a function, or of its class; None where there is no text, as in a console."""
+    while isinstance(function, partial):
+        function = function.func
+    thing = inspect.unwrap(function)
+    try:
+        text = inspect.getsource(thing if isinstance(thing, type) or inspect.isroutine(thing) else type(thing))
+    except (OSError, TypeError):
+        return None
+    return hashlib.sha256(text.encode(errors="surrogatepass")).hexdigest()[:16]

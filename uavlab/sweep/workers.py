@@ -172,18 +172,18 @@ def one_round(
     tasks: Iterator[Any] = (task(function, dict(cases[number]), number, marks) for number in numbers)
     if way == "packed":
         tasks = (task(packed_or_not(function, cases[number]), number, marks) for number in numbers)
+    if isinstance(backend, LokyBackend):  # it starts them all at once; and one alone would be this process
+        jobs = min(joblib.effective_n_jobs(jobs), max(len(numbers), 2))
     if backend.supports_return_generator:
-        results = joblib.Parallel(n_jobs=jobs, return_as="generator_unordered")(tasks)
+        # a case may change its own arrays, in memory of its own if they come as files
+        results = joblib.Parallel(n_jobs=jobs, return_as="generator_unordered", mmap_mode="c")(tasks)
     else:
         results = in_blocks(tasks, jobs)
     try:
-        if way != "packed":
-            yield from results
-            return
-        for number, content in results:
-            if content is None:
+        for number, value in results:  # `yield from` would close them before their warnings are ignored
+            if way == "packed" and value is None:
                 packed(function, cases[number], number)  # raises
-            yield number, opened(content)
+            yield number, opened(value) if way == "packed" else value
     finally:
         with warnings.catch_warnings(action="ignore"):  # joblib warns of results that nobody takes
             results.close()
