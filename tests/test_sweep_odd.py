@@ -8,6 +8,7 @@ import random
 import subprocess
 import sys
 import threading
+import types
 import warnings
 from collections import defaultdict
 from dataclasses import InitVar, dataclass
@@ -217,6 +218,25 @@ def test_a_generator_that_the_function_holds_is_refused(function):
     """On one core each case drew other numbers, on two the same."""
     with pytest.raises(ValueError, match=r"function holds a random generator.*: give each case a seed"):
         run(function)
+
+
+def test_a_long_list_is_not_looked_through_and_a_generator_beside_it_is_found():
+    looked = iter(range(10**9))
+    held = types.MappingProxyType({"long": Endless(looked), "rng": np.random.default_rng(1)})
+    with pytest.raises(ValueError, match="share what is in thing, a random generator"):
+        run(drawn, [{"thing": held, "x": x} for x in range(2)])
+    assert next(looked) < 100_000
+    loop = [1]
+    loop.append(loop)
+    assert run(len, [], on_error="raise") == run(lambda thing: 1, [{"thing": loop}])[1:]
+
+
+class Endless(list):
+    def __init__(self, things):
+        self.things = things
+
+    def __iter__(self):
+        return self.things
 
 
 def test_an_attribute_of_the_name_of_a_generator_is_none():
