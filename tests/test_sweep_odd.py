@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 
 import uavlab.sweep.rows as module
+from uavlab.compiled import compiled
 from uavlab.sweep import Failure, sweep
 from uavlab.sweep.values import as_text, fingerprint, read, text_mark
 
@@ -147,6 +148,7 @@ def test_the_text_of_a_function_is_its_own_whatever_it_is_wrapped_in():
     assert text_mark(plain) == text_mark(decorated) == text_mark(functools.partial(plain, x=3))
     assert len({text_mark(one) for one in (plain, drawn, Simulator, Simulator(1).__call__, steps(1))}) == 5
     assert text_mark(Simulator(1)) == text_mark(Simulator)
+    assert text_mark(compiled(plain)) == text_mark(plain)
     assert text_mark(math.sin) is None
 
 
