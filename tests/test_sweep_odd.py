@@ -3,11 +3,13 @@
 import copy
 import functools
 import json
+import math
 import os
 import random
 import subprocess
 import sys
 import threading
+import types
 import warnings
 from collections import defaultdict
 from dataclasses import InitVar, dataclass
@@ -18,8 +20,9 @@ import numpy as np
 import pytest
 
 import uavlab.sweep.rows as module
+from uavlab.compiled import compiled
 from uavlab.sweep import Failure, sweep
-from uavlab.sweep.values import as_text, fingerprint, read
+from uavlab.sweep.values import as_text, fingerprint, read, text_mark
 
 CASES = [{"x": x} for x in range(6)]
 
@@ -122,6 +125,33 @@ def test_two_scripts_with_functions_of_one_name_do_not_share_a_file(tmp_path):
     assert second.stdout == ""
 
 
+def test_a_script_run_as_a_module_is_named_as_when_it_is_imported(tmp_path):
+    (tmp_path / "inner").mkdir()
+    (tmp_path / "inner" / "twice.py").write_text(SCRIPT.format(factor=2))
+    done = subprocess.run([sys.executable, "-m", "inner.twice"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.stdout == "[2, 4]\n"
+    assert json.loads((tmp_path / "rows.jsonl").read_text().splitlines()[0])["sweep"] == "inner.twice.run"
+
+
+def checked(function):
+    @functools.wraps(function)
+    def inner(**case):
+        return function(**case)
+
+    return inner
+
+
+decorated = checked(plain)
+
+
+def test_the_text_of_a_function_is_its_own_whatever_it_is_wrapped_in():
+    assert text_mark(plain) == text_mark(decorated) == text_mark(functools.partial(plain, x=3))
+    assert len({text_mark(one) for one in (plain, drawn, Simulator, Simulator(1).__call__, steps(1))}) == 5
+    assert text_mark(Simulator(1)) == text_mark(Simulator)
+    assert text_mark(compiled(plain)) == text_mark(plain)
+    assert text_mark(math.sin) is None
+
+
 def test_a_function_whose_text_has_changed_is_told(tmp_path):
     script(tmp_path, "twice.py", 2)
     content = (tmp_path / "rows.jsonl").read_bytes()
@@ -219,6 +249,29 @@ def test_a_generator_that_the_function_holds_is_refused(function):
         run(function)
 
 
+def test_a_long_list_is_not_looked_through_and_a_generator_beside_it_is_found():
+    looked = iter(range(10**9))
+    held = types.MappingProxyType({"long": Endless(looked), "rng": np.random.default_rng(1)})
+    with pytest.raises(ValueError, match="share what is in thing, a random generator"):
+        run(drawn, [{"thing": held, "x": x} for x in range(2)])
+    assert next(looked) < 100_000
+    loop = [1]
+    loop.append(loop)
+    assert run(len, [], on_error="raise") == run(lambda thing: 1, [{"thing": loop}])[1:]
+
+
+class Endless(list):
+    def __init__(self, things):
+        self.things = things
+
+    def __iter__(self):
+        return self.things
+
+
+def test_a_function_of_one_case_may_hold_a_generator():
+    assert run(Simulator(random.Random(1)), CASES[:1]) == [random.Random(1).random()]
+
+
 def test_an_attribute_of_the_name_of_a_generator_is_none():
     class Named:
         RNG = 3
@@ -302,10 +355,12 @@ def test_what_is_no_error_but_leaves_a_function_is_a_failure_and_ctrl_c_stops(ro
 
 def test_groups_of_exceptions_keep_no_frames():
     def grouped(x):
+        several = []
         try:
             raise ValueError("one")
         except ValueError as error:
-            raise ExceptionGroup("several", [error]) from None
+            several.append(error)
+        raise ExceptionGroup("several", several)
 
     with pytest.warns(RuntimeWarning):
         (failure,) = run(grouped, CASES[:1])

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from functools import partial
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -43,6 +44,8 @@ class OwnGenerators(Sequence[Mapping[str, Any]]):
         owners: dict[int, int] = {}
         for number, case in enumerate(cases):
             for name, value in case.items():
+                if isinstance(value, PLAIN):
+                    continue
                 if id(value) not in known:
                     known[id(value)] = value, generators_in(value)
                 for rng in known[id(value)][1]:
@@ -55,8 +58,9 @@ class OwnGenerators(Sequence[Mapping[str, Any]]):
 
     def __getitem__(self, number: int) -> dict[str, Any]:  # type: ignore[override]
         case = dict(self.cases[number])
-        with suppress(Exception):  # what holds a lock, say, can't be copied, and doesn't travel either
-            case |= copy.deepcopy({name: case[name] for name in self.names.get(number, ())})
+        if names := self.names.get(number):
+            with suppress(Exception):  # what holds a lock, say, can't be copied, and doesn't travel either
+                case |= copy.deepcopy({name: case[name] for name in names})
         return case
 
 
@@ -75,7 +79,9 @@ def generators_in(value: Any) -> list[Any]:
     found: list[Any] = []
     seen: dict[int, Any] = {}
     waiting = deque([value])
-    while waiting and len(seen) < MOST:
+    for _ in range(MOST):
+        if not waiting:
+            break
         thing = waiting.popleft()
         if id(thing) in seen or isinstance(thing, PLAIN):
             continue
@@ -83,7 +89,7 @@ def generators_in(value: Any) -> list[Any]:
         if isinstance(thing, KINDS):
             found.append(thing)
         else:
-            waiting.extend(parts_of(thing))
+            waiting.extend(islice(parts_of(thing), MOST))
     return found
 
 

@@ -11,6 +11,7 @@ import errno
 import hashlib
 import json
 import os
+import stat
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -71,7 +72,8 @@ class Rows(NoRows):
         self.places: dict[int, tuple[int, int]] = {}
 
     def __enter__(self) -> Rows:
-        if self.path.exists() and not self.path.is_file():
+        place = self.stat()
+        if place and not stat.S_ISREG(place.st_mode):
             raise ValueError(f"to must be the name of a file that can be read again, got {str(self.path)!r}")
         for last in (False, False, True):  # as on some network disks no file is ever the one that was opened
             self.file = open(self.path, "a+b", buffering=0)
@@ -104,7 +106,15 @@ class Rows(NoRows):
 
     def is_in_place(self) -> bool:
         """Whether the file that is open is the one of that name: it may have been removed, or replaced."""
-        return self.path.exists() and os.path.samestat(os.fstat(self.file.fileno()), self.path.stat())
+        place = self.stat()
+        return place is not None and os.path.samestat(os.fstat(self.file.fileno()), place)
+
+    def stat(self) -> os.stat_result | None:
+        """What there is of that name: asked once, as others may put a file there or remove it."""
+        try:
+            return self.path.stat()
+        except FileNotFoundError:
+            return None
 
     def again(self) -> BinaryIO:
         """The open file, to be read from."""
@@ -193,7 +203,7 @@ class Rows(NoRows):
     def finish(self) -> None:
         """Bring the rows into the order of the cases."""
         in_place = self.is_in_place()
-        if not in_place and self.path.exists():
+        if not in_place and self.stat():
             self.remarks.append(f"{self.path.name} was replaced while the sweep ran: what came later isn't in it")
             return
         if in_place and self.is_ordered():
