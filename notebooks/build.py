@@ -8,8 +8,8 @@ taken out. `--check` changes nothing and fails if anything is stale. `--html` ru
 writes a project that a student has run and saved as such a page, beside it. `--nbgrader FOLDER` makes assignments of
 the exercises. `--full` measures all claims of the papers anew, with full samples, and writes them to
 `notebooks/trial.csv`, which chapter 15 reads; where that is missing or old, it is measured without being asked for. The
-tables for teachers in `notebooks/README.md` are kept up to date, too, and the pictures of the README, which are those of
-cells with the tag `gallery`.
+tables for teachers in `notebooks/README.md` are kept up to date, too, and the pictures of the README, which are those
+of cells with the tag `gallery`.
 """
 
 import argparse
