@@ -6,7 +6,10 @@ out (they come back with Run All, a still picture stands for them). Exercises ar
 taken out. `--check` changes nothing and fails if anything is stale. `--html` runs notebooks and writes them to
 `notebooks/html/` as pages that work offline, each in one file with its scenes, sliders and equations. `--page FILE`
 writes a project that a student has run and saved as such a page, beside it. `--nbgrader FOLDER` makes assignments of
-the exercises. The tables for teachers in `notebooks/README.md` are kept up to date, too.
+the exercises. `--full` measures all claims of the papers anew, with full samples, and writes them to
+`notebooks/trial.csv`, which chapter 15 reads; where that is missing or old, it is measured without being asked for. The
+tables for teachers in `notebooks/README.md` are kept up to date, too, and the pictures of the README, which are those
+of cells with the tag `gallery`.
 """
 
 import argparse
@@ -15,6 +18,7 @@ import re
 import sys
 from pathlib import Path
 
+import gallery
 import jupytext
 import nbformat
 import teaching
@@ -24,9 +28,12 @@ from nbclient import NotebookClient
 from nbformat import NotebookNode
 
 from uavlab.plot.pictures import quantised
+from uavlab.trial import read_findings, run_trial, write_findings
 
 HERE = Path(__file__).resolve().parent
 SOURCES = HERE / "src"
+TRIAL = HERE / "trial.csv"
+READS_TRIAL = "15_the_papers_on_trial"
 SOLUTION = re.compile(r"^([ \t]*)### BEGIN SOLUTION.*?### END SOLUTION[ \t]*$", re.DOTALL | re.MULTILINE)
 ANSWER = re.compile(r"^(\w+) = ", re.MULTILINE)
 SECONDS_PER_CELL = 300
@@ -44,7 +51,11 @@ def main() -> int:
         help="write exercises, as in 05 06, to FOLDER/source for nbgrader; default: all",
     )
     command.add_argument("--page", type=Path, metavar="FILE", help="a saved notebook as a page to hand in, beside it")
+    command.add_argument("--full", action="store_true", help="measure all claims of the papers anew, to trial.csv")
     options = command.parse_args()
+    if options.full:
+        measure_claims()
+        return 0
     if options.page:
         return page_of(options.page)
     if options.nbgrader:
@@ -75,10 +86,19 @@ def main() -> int:
             print(f"stale: {target(source).relative_to(HERE.parent)}: {reason}; run python notebooks/build.py")
         for orphan in orphans:
             print(f"no source: {orphan.relative_to(HERE.parent)}")
+        if old := trial_staleness():
+            print(f"stale: notebooks/trial.csv: {old}")
         if tables != guide:
             print("stale: notebooks/README.md: its tables differ from the chapters; run python notebooks/build.py")
+        for picture in (old_pictures := gallery.stale()):
+            print(
+                f"stale: {picture.relative_to(HERE.parent)}: its chapter draws another; run python notebooks/build.py"
+            )
         print(f"{len(sources)} notebooks, {len(stale)} stale, {len(orphans)} without a source")
-        return 1 if stale or orphans or tables != guide else 0
+        return 1 if stale or orphans or old or old_pictures or tables != guide else 0
+    if not options.names and trial_staleness():
+        measure_claims()
+        stale |= {source: "its claims were measured anew" for source in sources if source.stem == READS_TRIAL}
     for source in sources if options.all or options.names else stale:
         print(f"running {source.relative_to(SOURCES)}", flush=True)
         write(executed(jupytext.read(source)), target(source))
@@ -86,7 +106,14 @@ def main() -> int:
             write(exercise(source), exercise_target(source))
     if tables != guide:
         readme.write_text(tables, encoding="utf-8")
+    gallery.write()
     return 0
+
+
+def measure_claims() -> None:
+    """Measure all claims of the papers with full samples, for chapter 15."""
+    write_findings(run_trial(full=True, jobs=-1), TRIAL)
+    print(TRIAL)
 
 
 def assignments(names: list[str], course: Path) -> list[Path]:
@@ -159,6 +186,15 @@ def staleness(source: Path) -> str:
         exercises = exercise_target(source)
         if not exercises.exists() or exercises.read_text(encoding="utf-8") != text_of(exercise(source)):
             return "its exercise differs"
+    return ""
+
+
+def trial_staleness() -> str:
+    """Why the papers' claims have to be measured again; empty when they haven't."""
+    try:
+        read_findings(TRIAL)
+    except (OSError, ValueError) as problem:
+        return str(problem)
     return ""
 
 

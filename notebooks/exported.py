@@ -140,6 +140,8 @@ def described(notebook: NotebookNode) -> NotebookNode:
             cell.source = cell.source.replace(".ipynb)", ".html)")
         for output in cell.get("outputs", []):
             data = output.get("data", {})
+            if "text/markdown" in data:
+                data["text/markdown"] = data["text/markdown"].replace(".ipynb)", ".html)")
             if "image/png" in data and "text/html" not in data:
                 picture = base64.b64encode(quantised(base64.b64decode(data.pop("image/png")))).decode()
                 words = html.escape(output.metadata.get("image/png", {}).get("alt", ""))

@@ -38,7 +38,7 @@ TWELVE_WEEKS = {
     "Who is below": ("08", "09"),
     "Ants, swarms, and how far they are from the optimum": ("10", "11"),
     "What a UAV can fly, and what survives gusts": ("12", "13"),
-    "To an autopilot": ("14",),
+    "To an autopilot, and the papers on trial": ("14", "15"),
     "The project": ("16",),
 }
 

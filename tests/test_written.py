@@ -29,10 +29,12 @@ PACKAGES = (
     "risk",
     "scene",
     "spline",
+    "sweep",
+    "trial",
     "vehicle_sim",
     "weather",
 )
-ALONE = ("power", "resilience", "route", "statistics", "storage", "sweep", "vehicle")
+ALONE = ("power", "resilience", "route", "statistics", "storage", "vehicle")
 """Modules without a face: what they define is public."""
 
 

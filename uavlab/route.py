@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from uavlab import checks
-from uavlab.city import City
+from uavlab.city import City, LazyCity
 from uavlab.city.extent import checked_heights
 from uavlab.city.segments import least_clearance
 from uavlab.files import written_whole
@@ -388,6 +388,9 @@ class Route:
             return float("nan")
         if not city.inside(self.points).all():
             return 0.0
+        if isinstance(city, LazyCity):
+            last = max(len(self.points) - 1, 1)
+            return float(city.segment_distance(self.points[:last], self.points[-last:]).min())
         points = (self.points - city.origin) / city.cell
         return city.cell * float(least_clearance(city.runs, city.clearance, city.cell, points))
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from uavlab import checks
-from uavlab.city import Building, City, NoFlyZone
+from uavlab.city import Building, City, LazyCity, NoFlyZone
 from uavlab.city.place import Place
 from uavlab.city.source import Entry, Source
 from uavlab.files import written_whole
@@ -74,6 +74,8 @@ def save(thing: Saved, path: str | Path) -> None:
     """
     if not isinstance(thing, Route | Curve | City | RiskMap):
         raise ValueError(f"thing must be a Route, a Curve, a City or a RiskMap, got {type(thing).__name__}")
+    if isinstance(thing, LazyCity):
+        raise ValueError("thing must be a plain City: read or make a lazy one anew, or save city.part(around=...)")
     path = checks.path("path", path)
     arrays: dict[str, np.ndarray] = {}
     header = {"version": VERSION, "thing": described(thing, arrays)}

@@ -219,7 +219,7 @@ def draw_order(found, name, axes, last):
     return plot.draw_map(axes, yard, when, plot.SEQUENTIAL, vmin=1, vmax=last)
 
 
-# %% tags=["figure"]
+# %% tags=["figure", "gallery"]
 def side_by_side(**searches):
     """Two searches in the yard."""
     figure, panels = plot.new_panels(1, 2, width=9.6, height=4.0)

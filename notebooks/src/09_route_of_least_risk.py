@@ -281,7 +281,7 @@ for at, (paper, ratio) in enumerate(ALLOWED.items()):
 # gives no $f_1$. With our form of $J_s$ (see the table at the end) the cut by sums is up to 81 % for $f_1$ = 100 m²,
 # but 48 % for 500 m². So their comparison can't be repeated.
 
-# %% tags=["figure"]
+# %% tags=["figure", "gallery"]
 COLORS = {
     "baseline": plot.BLUE, "riskiest shortest": plot.ORANGE, "aware, at most +7.4 %": plot.GREEN,
     "drift-aware, at most +7.4 %": plot.SKY, "Pareto front": plot.BLACK,

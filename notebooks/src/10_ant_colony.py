@@ -604,7 +604,7 @@ for one, other in (("paper's, no scent", "paper's colony"), ("our colony", "ours
     share, low, high = longer.wins(one, other)
     print(f"{one} better than {other} in {share:.0%} [{low:.0%}, {high:.0%}] of pairs")
 
-# %% tags=["figure"]
+# %% tags=["figure", "gallery"]
 shown = dict(zip(scents, 100 * np.median(longer.histories, axis=(1, 2))[:, 49:], strict=True))
 plot.lines(range(50, 4001), shown, "ants", "median gap so far [%]", log="xy", colors=COLORS,
            title="Scent stops the paper's colony, and helps ours")  # fmt: skip

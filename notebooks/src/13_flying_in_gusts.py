@@ -385,7 +385,7 @@ assert round(GPS.drift * math.sqrt(1 - math.exp(-2 * 39 / GPS.correlation)), 1) 
 # We take a wind of 9 m/s from the west with gusts of 4 m/s and a memory $\tau_u$ (`correlation`) of 3 s, so that
 # $\sigma$ across the route is about a metre (1.1 m on the hundred routes below; up it is only 0.4 m).
 
-# %%
+# %% tags=["gallery"]
 storm = Wind((9.0, 0.0), deviation=4.0, correlation=3.0)
 in_storm = some_flights(routes["notch"], storm, EXACT)
 plot.tracks(city, in_storm, routes["notch"], area=(40, 100, 5, 65), wind=storm)

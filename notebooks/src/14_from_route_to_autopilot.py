@@ -552,4 +552,4 @@ with simulated_vehicle(city, campus.uav, gusty, (12.5, 17.5)) as vehicle, connec
 # long a flight may be, and a mission of your own:
 # [exercises/14_from_route_to_autopilot_exercises.ipynb](exercises/14_from_route_to_autopilot_exercises.ipynb).
 #
-# Before: [13 flying in gusts](13_flying_in_gusts.ipynb). Next: [16 Your own city](16_your_own_city.ipynb).
+# Before: [13 flying in gusts](13_flying_in_gusts.ipynb). Next: [15 The papers on trial](15_the_papers_on_trial.ipynb).

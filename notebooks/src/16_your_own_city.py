@@ -822,4 +822,4 @@ Markdown("\n".join(f"- {one}" for one in said))
 #   [doi:10.2905/2FF68A52-5B5B-4A22-8F40-C41DA8332CFE](https://doi.org/10.2905/2FF68A52-5B5B-4A22-8F40-C41DA8332CFE): how
 #   residents are shared out to pixels.
 #
-# Before: [14 From route to autopilot](14_from_route_to_autopilot.ipynb).
+# Before: [15 The papers on trial](15_the_papers_on_trial.ipynb).

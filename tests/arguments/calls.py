@@ -28,6 +28,7 @@ from things import (
     HOURS,
     HOUSE,
     JOINT,
+    LAZY,
     LINE,
     LOG,
     MILD,
@@ -60,6 +61,7 @@ from things import (
     cityjson_file,
     condition_check,
     data,
+    fresh,
     geojson_file,
     grid,
     in_flight,
@@ -86,27 +88,36 @@ from uavlab.mavlink import connect, follow, go_home, land, start
 from uavlab.mission import FencePolygon, Item, Mission
 from uavlab.prediction import FEATURES, SETTINGS
 from uavlab.resilience import ADVANCED, BASIC, Controller
+from uavlab.trial import read_findings
 from uavlab.vehicle_sim import DataLink, process, simulated_vehicle
+
+ROOT = Path(__file__).parents[2]
 
 PACKAGES = (
     "city", "exercises", "flight", "mavlink", "mission", "offsets", "optimizers", "planners", "plot", "prediction",
-    "risk", "scene", "spline", "vehicle_sim", "weather",
+    "risk", "scene", "spline", "sweep", "trial", "vehicle_sim", "weather",
 )  # fmt: skip
-MODULES = ("route", "vehicle", "power", "resilience", "statistics", "sweep")
+MODULES = ("route", "vehicle", "power", "resilience", "statistics")
 
 MADE_BY_THE_LIBRARY = {
+    "city.LazyCity",
     "city.Source", "exercises.Progress", "exercises.Verdict", "flight.Energy", "flight.Flight", "flight.Flights",
     "flight.Rate",
     "mavlink.CommandDeniedError", "mavlink.Link", "mavlink.MissionRejectedError", "mavlink.Telemetry", "mission.Check",
     "offsets.Filtered", "offsets.SafetyDomain", "optimizers.Result", "planners.Comparison", "plot.Sliders",
     "plot.Style", "power.Power",
     "prediction.Dataset", "resilience.Change", "risk.Fall", "scene.Scene", "spline.Feasibility", "spline.Limit",
+    "sweep.Failure",
+    "trial.Claim", "trial.Experiment", "trial.Finding", "trial.Finding.of", "trial.Measured",
     "vehicle.DataSheet", "vehicle_sim.SimulatedVehicle", "weather.DrydenParameters", "weather.ReferenceWind",
     "weather.WeatherRecord",
 }  # fmt: skip
 """Results: nobody else makes them, so that their making needs no checks. Their methods do, and who takes them."""
 
 INSIDE = {
+    "city.LazyCity.blocked_window",  # of planners
+    "city.LazyCity.buildings_over",  # of its own
+    "city.LazyCity.window",  # of its own
     "mavlink.Link.beat",  # of `Link.receive`
     "mavlink.Link.note",  # of its record
     "mavlink.Link.receive",  # a step of `upload`, `follow` and others
@@ -121,8 +132,8 @@ INSIDE = {
     "route.promises_of",  # of planners
     "statistics.likely_means",  # of `grouped_share_interval`
     "statistics.quantile",  # of `grouped_share_interval`
-    "sweep.called",  # of `sweep`
-    "sweep.refuse_shared_generators",  # of `sweep`
+    "sweep.UnpicklableError",  # raised, with its words
+    "sweep.WorkerLostError",  # raised, with its words
     "plot.SEQUENTIAL",  # a colour map of matplotlib
     "plot.draw_map",  # a step of figures
     "plot.finished",  # a step of figures
@@ -245,7 +256,7 @@ def site():
 
 
 def mapped(**more):
-    return {"cell": 1.0, "margin": 4.0, "voxels": "touched", "no_fly": [ZONE], **more}
+    return {"cell": 1.0, "margin": 4.0, "voxels": "touched", "no_fly": [ZONE], "lazy": False, **more}
 
 
 def routed(**more):
@@ -287,6 +298,12 @@ CALLS = {
     "city.City.from_buildings: by margin": lambda: mapped(
         buildings=[HOUSE], origin=None, size=None, name="town", reference=PLACE, source=SOURCE, terrain=0.5,
     ),
+    "city.LazyCity.part": lambda: {"self": LAZY, "around": WAY, "margin": 2.0},
+    "city.LazyCity.height_above_ground": lambda: {"self": LAZY, "points": WAY},
+    "city.LazyCity.is_free": lambda: {"self": LAZY, "points": WAY},
+    "city.LazyCity.distance": lambda: {"self": LAZY, "points": WAY, "exact_within": 2.0},
+    "city.LazyCity.segment_distance": lambda: {"self": LAZY, "start": WAY[:2], "end": WAY[1:], "at_most": 4.0},
+    "city.LazyCity.random_pairs": lambda: {"self": LAZY, "count": 2, "rng": 1, "apart": 5.0, "min_clearance": 0.5},
     "city.City.towards_wall": lambda: {"self": TOWN, "vector": (1.0, 0.5, 0.0)},
     "city.City.clearance_along": lambda: {"self": TOWN, "offset": (1.0, 0.5, 0.0), "at_most": 4.0},
     "city.City.height_above_ground": lambda: {"self": TOWN, "points": WAY},
@@ -365,7 +382,7 @@ CALLS = {
     "flight.fly": lambda: flown(number=1),
     "flight.fly: in wind": lambda: flown(number=1, disturbance=BREEZE),
     "flight.fly: in changing air": lambda: flown(number=1, disturbance=changing),
-    "flight.monte_carlo": lambda: flown(flights=3, every=0.5, jobs=1, progress=False),
+    "flight.monte_carlo": lambda: flown(flights=3, every=0.5, jobs=1, to=fresh("rows"), progress=False),
     "flight.offset_sigma": lambda: {
         "uav": DRONE, "wind": BREEZE, "ground_velocity": (1.0, 0.0, 0.0), "altitude": 32.0, "controller": ADVANCED,
     },
@@ -481,7 +498,7 @@ CALLS = {
     ),
     "planners.compare_planners": lambda: {
         "planners": {"ants": ants}, "maps": [RISK], "seeds": (1, 2), "budget": 10, "start": START, "goal": GOAL,
-        "refinement": 0.0, "jobs": 1, "progress": False,
+        "refinement": 0.0, "jobs": 1, "to": fresh("rows"), "progress": False,
     },
     "planners.flight_conditions": lambda: {
         "load": "light", "disturbance": MILD, "uav": DRONE, "reading": "table", "clock": 0.5,
@@ -875,9 +892,21 @@ CALLS = {
     "statistics.share_over_maps": lambda: {"values": PLAN[:3, :4]},
     # sweep
     "sweep.sweep": lambda: {
-        "function": level, "cases": [{"x": 1.0}, {"x": 2.0}], "jobs": 1, "progress": False, "unit": "case",
+        "function": level, "cases": [{"x": 1.0}, {"x": 2.0}], "jobs": 1, "on_error": "record",
+        "to": fresh("rows"), "progress": False, "unit": "case",
     },
+    # trial
+    "trial.verdict": lambda: {"claim": JUDGED.claim, "measured": JUDGED.measured},
+    "trial.agree": lambda: {"one": JUDGED, "other": JUDGED},
+    "trial.run_trial": lambda: {"claims": [JUDGED.claim], "full": False, "jobs": 1, "progress": False},
+    "trial.write_findings": lambda: {"findings": [JUDGED], "path": out("findings.csv")},
+    "trial.read_findings": lambda: {"path": ROOT / "notebooks" / "trial.csv"},
+    "trial.claims_table": lambda: {"findings": [JUDGED], "quick": [JUDGED], "links": {"01": "01.ipynb"}},
+    "trial.verdict_figure": lambda: {"findings": [JUDGED]},
 }  # fmt: skip
+
+
+JUDGED = next(one for one in read_findings(ROOT / "notebooks" / "trial.csv") if one.claim.of == "lift")
 
 
 def connected(**arguments):

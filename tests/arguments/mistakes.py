@@ -102,6 +102,7 @@ MAY_BE_NAN = {
     "city.Terrain.from_raster.heights", "city.Terrain.from_grid.grid", "risk.raster_layer.values",  # no data
     "plot.section.values", "plot.value_map.values", "plot.heat_map.values", "plot.matrix.values",  # isn't drawn
     "city.City.cell_of.points", "city.City.inside.points", "city.City.is_free.points",  # lies outside of every map
+    "city.LazyCity.is_free.points",
 }  # fmt: skip
 
 MAY_BE_MASKED = {
@@ -135,6 +136,7 @@ RIGHTFUL = {
     "statistics.grouped_share_interval.counts": {"bools"},  # whether there was an event
     "risk.shelter_layer.ground": {"one number"},
     "city.City.from_buildings.terrain": {"3"},
+    "city.LazyCity.part.around": {"a Route"},
     "route.Route.integral.values": {"NaN inside", "None inside", "inf inside"},  # refused only where the route passes
     "statistics.over_maps.values": {"inf inside"},  # runs that failed have infinite gaps; their median is asked for
     "mission.Item.altitude": {"negative", "zero"},
@@ -149,6 +151,7 @@ RIGHTFUL = {
     **{f"plot.{kind}.y_range": {"None inside"} for kind in ("diagram", "lines", "points")},  # ends by itself
     "plot.heat_map.contours": {"too short"},
     "plot.sliders.labels": {"a word inside"},  # is one
+    "trial.claims_table.links": {"a word inside"},  # is a file's name
     "plot.bars.values": {"NaN inside"},  # has no bar, such as the clearance of a route that doesn't arrive
 }
 """Mistakes that are none, by function and parameter."""

@@ -7,6 +7,7 @@ import time
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 import pandas
@@ -34,6 +35,7 @@ SQUARE = ((4.0, 4.0), (7.0, 4.0), (7.0, 7.0), (4.0, 7.0))
 HOUSE = Building.prism(SQUARE, 5.0)
 ZONE = NoFlyZone(((9.0, 1.0), (11.0, 1.0), (11.0, 3.0), (9.0, 3.0)), 0.0, 6.0)
 TOWN = City.from_buildings([HOUSE], origin=(0, 0, 0), size=(12, 12, 8), reference=PLACE, no_fly=[ZONE], name="town")
+LAZY = City.from_buildings([HOUSE], origin=(0, 0, 0), size=(12, 12, 8), no_fly=[ZONE], name="town", lazy=True)
 OCCUPIED = TOWN.occupied
 PRICES = np.ones(TOWN.shape)
 START, GOAL = (1.5, 1.5, 2.5), (10.5, 10.5, 3.5)
@@ -202,6 +204,11 @@ def model_file():
 
 def out(name):
     return Path(FOLDER.name) / name
+
+
+def fresh(name):
+    """A file that isn't there yet, for what goes on with one that is."""
+    return out(f"{uuid4().hex}.{name}")
 
 
 def grid():

@@ -107,9 +107,13 @@ def timed(contender: Contender, pair: Pair) -> tuple[np.ndarray, float]:
     return points, float(np.median(times))
 
 
-def ours(city: City, price: np.ndarray | None = None) -> Contender:
+def ours(city: City, price: np.ndarray | None = None, heuristic: str = "auto") -> Contender:
     """Our A*, route and all; its points as voxels."""
-    return Contender("uavlab", lambda pair: city.cell_of(astar(city, pair.start, pair.goal, price=price).points))
+
+    def solve(pair: Pair) -> np.ndarray:
+        return city.cell_of(astar(city, pair.start, pair.goal, price=price, heuristic=heuristic).points)
+
+    return Contender("uavlab" if heuristic == "auto" else f"uavlab, {heuristic}", solve, "same rule")
 
 
 def scikit_image(city: City, price: np.ndarray | None = None) -> Contender:
@@ -360,7 +364,8 @@ def with_price(city: City, pairs: list[Pair], seed: int) -> None:
         ),
     }
     for title, (place, price) in cases.items():
-        contenders = [ours(place, price), scikit_image(place, price)]
+        contenders = [ours(place, price), ours(place, price, "octile"), ours(place, price, "coarse")]
+        contenders.append(scikit_image(place, price))
         print_results(title, contenders, compete(contenders, pairs, price), unit="cells × price")
 
 

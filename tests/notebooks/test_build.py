@@ -10,6 +10,7 @@ import nbformat
 import pytest
 
 from uavlab import plot
+from uavlab.trial import read_findings
 
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 SOURCE = '''# ---
@@ -76,6 +77,26 @@ def test_check_finds_what_is_stale_and_building_mends_it(build, tmp_path, monkey
     source.write_text(SOURCE.replace("double(4)", "double(5)"))
     assert run(build, monkeypatch, "--check") == 1
     assert "its cells differ from its source" in capsys.readouterr().out
+
+
+def test_claims_are_measured_where_they_are_missing_and_their_chapter_is_built_again(
+    build, tmp_path, monkeypatch, capsys
+):
+    (tmp_path / "src" / "15_the_papers_on_trial.py").write_text(SOURCE)
+    run(build, monkeypatch)
+    findings = read_findings(NOTEBOOKS / "trial.csv")
+    asked = []
+    monkeypatch.setattr(build, "run_trial", lambda **how: asked.append(how) or findings)
+    monkeypatch.setattr(build, "TRIAL", tmp_path / "trial.csv")
+    assert run(build, monkeypatch, "--check") == 1
+    assert "stale: notebooks/trial.csv" in capsys.readouterr().out
+    run(build, monkeypatch)
+    assert asked == [{"full": True, "jobs": -1}]
+    assert "running 15_the_papers_on_trial.py" in capsys.readouterr().out
+    assert (tmp_path / "trial.csv").read_bytes() == (NOTEBOOKS / "trial.csv").read_bytes()
+    run(build, monkeypatch)
+    assert len(asked) == 1
+    assert "running" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

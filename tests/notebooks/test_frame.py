@@ -13,7 +13,7 @@ FRAMED = sorted(SOURCES.glob("*.py"))
 CHAPTERS = [path.name[:2] for path in FRAMED]
 PROJECT = "16"
 """It has questions and points instead of exercises, and no paper to judge; the rest: test_your_own_city.py."""
-TAGS = {"check", "figure", "guide", "nbval-check-output", "try-it"}
+TAGS = {"check", "figure", "gallery", "guide", "nbval-check-output", "try-it"}
 
 
 @pytest.fixture(params=FRAMED, ids=lambda path: path.stem)

@@ -387,7 +387,7 @@ ENDS = (0.5, 0.5, 0.5), (3.5, 3.5, 3.5)
     [
         (
             lambda: astar(OPEN, *ENDS, heuristic="manhattan"),
-            "heuristic must be one of 'octile', 'euclidean', 'zero', got 'manhattan'",
+            "heuristic must be one of 'auto', 'octile', 'euclidean', 'zero', 'coarse', got 'manhattan'",
         ),
         (lambda: astar(OPEN, *ENDS, as_printed=True), "as_printed needs a price"),
         (lambda: astar(OPEN, *ENDS, price=np.ones((4, 4))), r"price must have the city's shape \(4, 4, 4\)"),

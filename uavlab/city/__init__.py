@@ -3,6 +3,7 @@
 from uavlab.city.buildings import Building
 from uavlab.city.cityjson import read_cityjson
 from uavlab.city.geojson import read_geojson
+from uavlab.city.lazy import LazyCity
 from uavlab.city.model import City
 from uavlab.city.place import Place
 from uavlab.city.rasters import read_terrain
@@ -17,6 +18,7 @@ from uavlab.city.zones import NoFlyZone
 __all__ = [
     "Building",
     "City",
+    "LazyCity",
     "NoFlyZone",
     "Place",
     "Source",

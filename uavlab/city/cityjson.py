@@ -63,6 +63,7 @@ def read_cityjson(
     terrain: Terrain | str | Path | float | None = None,
     voxels: str = "touched",
     no_fly: Sequence[NoFlyZone] = (),
+    lazy: bool = False,
 ) -> City:
     """Read a city model from a CityJSON file (1.0 to 2.0), or a sequence of features.
 
@@ -91,7 +92,7 @@ def read_cityjson(
     terrain : Terrain, path of a raster, or float, optional
         The ground; a number is level ground at this height [m] of the file. By default the `TINRelief` of the file,
         else a surface through the feet of the buildings.
-    voxels, no_fly
+    voxels, no_fly, lazy
         As for `City.from_buildings`.
 
     Returns
@@ -104,7 +105,7 @@ def read_cityjson(
     ValueError
         If the file at `path` is broken or has nothing that could be an obstacle; `crs` is unknown, or can't be that of
         the coordinates; `height_unit` is no unit of length; `terrain` doesn't cover the map; or `cell`, `margin`,
-        `voxels` or `no_fly` is what `City.from_buildings` refuses, as for over 500 million voxels.
+        `voxels`, `no_fly` or `lazy` is what `City.from_buildings` refuses, as for over 500 million voxels.
     FileNotFoundError
         If there is no file at `path`.
 
@@ -164,7 +165,7 @@ def read_cityjson(
     source = notes.source(path.name, "CityJSON", UNKNOWN if system is None else system.heights)
     city = City.from_buildings(
         buildings, cell=cell, margin=margin, name=path.name.split(".")[0], reference=place, source=source,
-        terrain=ground, voxels=voxels, no_fly=no_fly,
+        terrain=ground, voxels=voxels, no_fly=no_fly, lazy=lazy,
     )  # fmt: skip
     source.warn()
     return city

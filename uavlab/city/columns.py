@@ -56,29 +56,32 @@ def extent(polygon, count, axis):
 
 
 @compiled
-def widen(polygons, inset, low, high):
+def widen(polygons, inset, low, high, first=(0, 0)):
     """Widen the range of heights of each column, in place, by what of flat polygons (T, P, 3) lies in it.
 
-    Columns (nx, ny) are smaller by `inset` on each side: what merely touches one at its border isn't in it.
+    Columns (nx, ny) are smaller by `inset` on each side: what merely touches one at its border isn't in it. They begin
+    with the column `first`.
     """
+    end = (first[0] + low.shape[0], first[1] + low.shape[1])
     corners = polygons.shape[1]
     strip, square, spare = np.empty((corners + 8, 3)), np.empty((corners + 8, 3)), np.empty((corners + 8, 3))
     for polygon in polygons:
         west, east = extent(polygon, corners, X)
-        first_i, last_i = columns_between(west, east, inset, low.shape[0])
-        for i in range(first_i, last_i):
+        first_i, last_i = columns_between(west, east, inset, end[0])
+        for i in range(max(first_i, first[0]), last_i):
             count = cut(polygon, corners, X, i + inset, True, spare)
             count = cut(spare, count, X, i + 1 - inset, False, strip)
             if count == 0:
                 continue
             south, north = extent(strip, count, Y)
-            first_j, last_j = columns_between(south, north, inset, low.shape[1])
-            for j in range(first_j, last_j):
+            first_j, last_j = columns_between(south, north, inset, end[1])
+            for j in range(max(first_j, first[1]), last_j):
                 left = cut(strip, count, Y, j + inset, True, spare)
                 left = cut(spare, left, Y, j + 1 - inset, False, square)
+                a, b = i - first[0], j - first[1]
                 for n in range(left):
-                    low[i, j] = min(low[i, j], square[n, 2])
-                    high[i, j] = max(high[i, j], square[n, 2])
+                    low[a, b] = min(low[a, b], square[n, 2])
+                    high[a, b] = max(high[a, b], square[n, 2])
 
 
 @compiled
@@ -116,30 +119,35 @@ def area_of(polygon, count):
 
 
 @compiled
-def touch(occupied, triangles, ends, inset):
+def touch(occupied, triangles, ends, inset, first, columns):
     """Mark the voxels that convex solids reach into by more than `inset`, in place.
 
     The surface of solid n are the triangles (T, 3, 3) [cells from the corner of the map] from ends[n − 1] to ends[n].
+    `occupied` are the columns of a map of so many `columns` (nx, ny) from the column `first` (i, j) on; what is marked
+    in one doesn't depend on where they begin.
     """
     begin = 0
     for end in ends:
         surface = triangles[begin:end].copy()
         begin = end
         window = np.empty((2, 2), np.int64)
+        here = np.empty((2, 2), np.int64)
         for axis in range(2):
             least, most = surface[0, 0, axis], surface[0, 0, axis]
             for triangle in surface:
                 for corner in triangle:
                     least, most = min(least, corner[axis]), max(most, corner[axis])
-            window[axis] = columns_between(least, most, inset, occupied.shape[axis])
-        shape = (window[0, 1] - window[0, 0], window[1, 1] - window[1, 0])
-        if shape[0] == 0 or shape[1] == 0:
-            continue
-        for axis in range(2):
+            window[axis] = columns_between(least, most, inset, columns[axis])
+            here[axis, 0] = max(window[axis, 0], first[axis])
+            here[axis, 1] = min(window[axis, 1], first[axis] + occupied.shape[axis])
             surface[:, :, axis] -= window[axis, 0]
+        if here[0, 0] >= here[0, 1] or here[1, 0] >= here[1, 1]:
+            continue
+        shape = (here[0, 1] - here[0, 0], here[1, 1] - here[1, 0])
         low, high = np.full(shape, np.inf), np.full(shape, -np.inf)
-        widen(surface, inset, low, high)
-        fill(occupied[window[0, 0] : window[0, 1], window[1, 0] : window[1, 1]], low, high, inset)
+        widen(surface, inset, low, high, (here[0, 0] - window[0, 0], here[1, 0] - window[1, 0]))
+        i, j = here[0, 0] - first[0], here[1, 0] - first[1]
+        fill(occupied[i : i + shape[0], j : j + shape[1]], low, high, inset)
 
 
 @compiled

@@ -15,6 +15,9 @@ from uavlab.city.terrain import Terrain, ground_and_top
 MOST_VOXELS = 500_000_000
 """More than this is refused: half a gigabyte for the occupancy alone."""
 
+MOST_LAZY = 100_000_000_000
+"""Of a lazy map: a list of where its voxels are known would no longer fit."""
+
 
 def checked_cell(cell: float) -> float:
     edge = checks.number("cell", cell)
@@ -118,6 +121,23 @@ def extent_and_ground(
     return corner, shape, ground, top
 
 
+def lazy_extent(
+    buildings: Sequence[Building],
+    cell: float,
+    origin: npt.ArrayLike | None,
+    size: npt.ArrayLike | None,
+    margin: float,
+    terrain: Terrain | float | None,
+    voxels: str,
+) -> tuple[np.ndarray, tuple[int, int, int], float | None]:
+    """Lowest corner [m] and shape of a lazy map, and the height of its ground [m]."""
+    if isinstance(terrain, Terrain):
+        raise ValueError("lazy=True needs level ground, terrain as one number [m]: take a larger cell without it")
+    if voxels != "touched":
+        raise ValueError(f"lazy=True knows only voxels='touched', got {voxels!r}")
+    return *extent_of(buildings, cell, origin, size, margin, terrain, MOST_LAZY), terrain
+
+
 def extent_of(
     buildings: Sequence[Building],
     cell: float,
@@ -125,6 +145,7 @@ def extent_of(
     size: npt.ArrayLike | None,
     margin: float,
     terrain: Terrain | float | None,
+    most: int = MOST_VOXELS,
 ) -> tuple[np.ndarray, tuple[int, int, int]]:
     """Lowest corner [m] and shape of a map, see `City.from_buildings`."""
     if size is None or origin is None:
@@ -146,21 +167,21 @@ def extent_of(
     if extent.shape != (3,) or not (np.isfinite(extent) & (extent > 0)).all():
         raise ValueError(f"size must be three positive extents (x, y, z) in metres, got {size!r}")
     nx, ny, nz = np.ceil(extent / cell - 1e-9)
-    check_size((nx, ny, nz), cell)
+    check_size((nx, ny, nz), cell, most)
     return corner, (int(nx), int(ny), int(nz))
 
 
-def check_size(shape: Sequence[float], cell: float) -> None:
+def check_size(shape: Sequence[float], cell: float, most: int = MOST_VOXELS) -> None:
     """Refuse a map of too many voxels; the cell that would do is rounded up, so that it does."""
-    if np.prod(shape, dtype=float) > MOST_VOXELS:
+    if np.prod(shape, dtype=float) > most:
         extent = cell * np.array(shape)
-        edge = cell * (np.prod(shape, dtype=float) / MOST_VOXELS) ** (1 / 3)
+        edge = cell * (np.prod(shape, dtype=float) / most) ** (1 / 3)
         step = 10.0 ** (np.floor(np.log10(edge)) - 2)
         edge = step * np.ceil(edge / step)
-        while np.prod(np.ceil(extent / edge)) > MOST_VOXELS:  # whole voxels are a little more
+        while np.prod(np.ceil(extent / edge)) > most:  # whole voxels are a little more
             edge += step
         raise ValueError(
             f"cell={cell:g} m gives {shape[0]:.0f} × {shape[1]:.0f} × {shape[2]:.0f} voxels over "
-            f"{extent[0]:.0f} × {extent[1]:.0f} × {extent[2]:.0f} m, more than {MOST_VOXELS:,}: "
-            f"use a cell of at least {edge:.3g} m or a smaller size"
+            f"{extent[0]:.0f} × {extent[1]:.0f} × {extent[2]:.0f} m, more than {most:,}: "
+            f"use a cell of at least {edge:.3g} m or a smaller size{', or lazy=True' * (most == MOST_VOXELS)}"
         )

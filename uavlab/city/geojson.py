@@ -78,6 +78,7 @@ def read_geojson(
     margin: float = 20.0,
     voxels: str = "touched",
     no_fly: Sequence[NoFlyZone] = (),
+    lazy: bool = False,
 ) -> City:
     """Read footprints with heights from a GeoJSON file (RFC 7946), for example an export of OpenStreetMap.
 
@@ -114,7 +115,7 @@ def read_geojson(
     terrain : Terrain, path of one, or float, optional
         The ground; a building then stands from the lowest ground under its footprint to its height above the highest,
         which is the safe side. By default it is flat at z = 0.
-    cell, margin, voxels, no_fly
+    cell, margin, voxels, no_fly, lazy
         As for `City.from_buildings`.
 
     Returns
@@ -129,7 +130,7 @@ def read_geojson(
         not given; `height`, `default_height` or `storey_height` is a number that is not above 0; `base` is a number
         that is not finite, or is negative where it counts from the ground; `heights_above` or `height_unit` is none of
         its words; `crs` is not known, or can't be that of the coordinates; `terrain` doesn't cover the map; or `cell`,
-        `margin`, `voxels` or `no_fly` is what `City.from_buildings` refuses, as for over 500 million voxels.
+        `margin`, `voxels`, `no_fly` or `lazy` is what `City.from_buildings` refuses, as for over 500 million voxels.
     FileNotFoundError
         If there is no file at `path`.
 
@@ -201,7 +202,7 @@ def read_geojson(
     source = notes.source(path.name, "GeoJSON", ABOVE_SEA if from_sea else UNKNOWN)
     city = City.from_buildings(
         buildings, cell=cell, margin=margin, name=path.name.split(".")[0], reference=place, source=source,
-        terrain=ground, voxels=voxels, no_fly=no_fly,
+        terrain=ground, voxels=voxels, no_fly=no_fly, lazy=lazy,
     )  # fmt: skip
     source.warn()
     return city

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from functools import wraps
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from uavlab.city.model import City
+if TYPE_CHECKING:
+    from uavlab.city.model import City
 
 
 def kept_for_city(count: int) -> Callable[[Callable[..., np.ndarray]], Callable[..., np.ndarray]]:

@@ -26,8 +26,10 @@ from uavlab.city.extent import (
     checked_occupied,
     checked_origin,
     extent_and_ground,
+    lazy_extent,
     locked,
 )
+from uavlab.city.near import WIDEST, near_obstacles
 from uavlab.city.numbering import MOST_PAIRS, checked_index, codes_of, indices_of, pairs_apart, whole_numbers
 from uavlab.city.place import Place, place_of
 from uavlab.city.rasterise import bilinear, mark_ground, range_of_ground, rasterise, reaches_into, surface_below
@@ -104,6 +106,16 @@ class City:
 
     def __post_init__(self) -> None:
         occupied = checked_occupied(self.occupied)
+        self.check_names()
+        if self.ground is not None:
+            object.__setattr__(self, "ground", checked_ground(self.ground, occupied.shape[:2]))
+            solid = occupied.copy()
+            mark_ground(solid, self.range_of_ground[1], self.cell, self.origin[2])
+            occupied = locked(solid)
+        object.__setattr__(self, "occupied", occupied)
+
+    def check_names(self) -> None:
+        """Check and set all but the voxels and the ground; `City` does it when it is made."""
         object.__setattr__(self, "origin", checked_origin(self.origin))
         object.__setattr__(self, "cell", checked_cell(self.cell))
         buildings = checks.several("buildings", self.buildings, Building, least=0)
@@ -114,16 +126,12 @@ class City:
             checks.instance("source", self.source, Source)
         if self.reference is not None:
             object.__setattr__(self, "reference", place_of("reference", self.reference))
-        if self.ground is not None:
-            object.__setattr__(self, "ground", checked_ground(self.ground, occupied.shape[:2]))
-            solid = occupied.copy()
-            mark_ground(solid, self.range_of_ground[1], self.cell, self.origin[2])
-            occupied = locked(solid)
-        object.__setattr__(self, "occupied", occupied)
 
     def __repr__(self) -> str:
-        shape = " × ".join(map(str, self.occupied.shape))
-        return f"<City {self.name}: {shape} voxels of {self.cell:g} m, {len(self.buildings)} buildings>"
+        shape = " × ".join(map(str, self.shape))
+        return (
+            f"<{type(self).__name__} {self.name}: {shape} voxels of {self.cell:g} m, {len(self.buildings)} buildings>"
+        )
 
     @classmethod
     def from_buildings(
@@ -140,6 +148,7 @@ class City:
         terrain: Terrain | float | None = None,
         voxels: str = "touched",
         no_fly: Sequence[NoFlyZone] = (),
+        lazy: bool = False,
     ) -> City:
         """Rasterise buildings and the ground that they stand on.
 
@@ -165,6 +174,9 @@ class City:
         voxels : {"touched", "centres"}
             A voxel is occupied when a building reaches into it; or, as in the papers, only when its centre lies in
             one, which loses what is thinner than a voxel.
+        lazy : bool
+            Make voxels where somebody looks, for maps that don't fit into memory: up to 100 billion voxels, on level
+            ground. What needs all of them at once is refused; see `uavlab.city.LazyCity`.
 
         Returns
         -------
@@ -176,7 +188,9 @@ class City:
             If `buildings` is no list of `Building`, or is empty and `origin` or `size` is missing; `cell` or `size` is
             not above 0; `margin` is negative; `origin` is not three finite numbers; `terrain` is neither terrain nor a
             finite number, doesn't cover the map, or has a reference system; `voxels` is none of the two; the map would
-            have over 500 million voxels; or `name`, `reference`, `source` or `no_fly` is what `City` refuses.
+            have over 500 million voxels; `lazy` isn't True or False, or comes with ground that isn't level, with
+            "centres" or with over 100 billion voxels; or `name`, `reference`, `source` or `no_fly` is what `City`
+            refuses.
 
         See Also
         --------
@@ -204,6 +218,11 @@ class City:
         buildings = checks.several("buildings", buildings, Building, least=0)
         cell, margin = checked_grid(cell, margin, voxels)
         terrain, zones = checked_terrain(terrain), checked_zones(no_fly)
+        if checks.flag("lazy", lazy):
+            from uavlab.city.lazy import lazy_city
+
+            extent = lazy_extent(buildings, cell, origin, size, margin, terrain, voxels)
+            return lazy_city(buildings, cell, *extent, name, reference, zones, source)
         corner, shape, ground, top = extent_and_ground(buildings, cell, origin, size, margin, terrain)
         occupied = np.zeros(shape, dtype=bool)
         if top is not None:
@@ -592,7 +611,10 @@ class City:
         min_height, max_height = checked_heights(min_height, max_height)
         blocked = self.occupied
         if min_clearance > 0:
-            blocked = self.clearance < least_kept(min_clearance, self.cell)
+            if "clearance" in vars(self) or min_clearance > WIDEST * self.cell:
+                blocked = self.clearance < least_kept(min_clearance, self.cell)
+            else:
+                blocked = near_obstacles(self, min_clearance)
         if self.no_fly:
             blocked = blocked | self.in_no_fly
         if min_height > 0 or max_height < np.inf:

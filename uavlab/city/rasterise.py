@@ -32,6 +32,15 @@ class Ranges(NamedTuple):
     high: np.ndarray
 
 
+class Window(NamedTuple):
+    """Columns of a map, for the rule "touched"; each has the voxels that it has on the whole map, to the last one."""
+
+    first: tuple[int, int]
+    """Its first column along x and y."""
+    columns: tuple[int, int]
+    """So many has the whole map."""
+
+
 def ranges_of(triangles: np.ndarray, shape: Sequence[int], cell: float, origin: np.ndarray) -> Ranges:
     """Heights of the surface (T, 3, 3) [m] of a convex solid, or of a terrain, in the columns that it reaches into."""
     plan = (triangles[..., :2] - origin[:2]) / cell
@@ -42,8 +51,11 @@ def ranges_of(triangles: np.ndarray, shape: Sequence[int], cell: float, origin: 
     return Ranges((slice(first[0], last[0]), slice(first[1], last[1])), low, high)
 
 
-def rasterise(hulls: Iterable[Hull], occupied: np.ndarray, cell: float, origin: np.ndarray, rule: str) -> None:
-    """Mark the voxels of convex pieces, in place; what sticks out of the map is cut off."""
+def rasterise(
+    hulls: Iterable[Hull], occupied: np.ndarray, cell: float, origin: np.ndarray, rule: str,
+    window: Window | None = None,
+) -> None:  # fmt: skip
+    """Mark the voxels of convex pieces, in place; what sticks out of the map, or its window, is cut off."""
     if rule == "centres":
         for hull in hulls:
             mark_centres(hull, occupied, cell, origin)
@@ -51,7 +63,8 @@ def rasterise(hulls: Iterable[Hull], occupied: np.ndarray, cell: float, origin: 
     waiting = iter(hulls)
     while surfaces := [hull.triangles for hull in islice(waiting, AT_ONCE)]:
         triangles = (np.concatenate(surfaces) - origin) / cell
-        touch(occupied, triangles, np.cumsum([len(surface) for surface in surfaces]), TOUCH / cell)
+        ends = np.cumsum([len(surface) for surface in surfaces])
+        touch(occupied, triangles, ends, TOUCH / cell, *(window or Window((0, 0), occupied.shape[:2])))
 
 
 def mark_centres(hull: Hull, occupied: np.ndarray, cell: float, origin: np.ndarray) -> None:

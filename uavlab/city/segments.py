@@ -212,6 +212,15 @@ def segment_clearances(runs, clearance, cell, starts, ends, at_most):
 
 
 @compiled
+def segment_distances(runs, starts, ends, at_most):
+    """Of segments (N, 3) each, at most (N,), all finite: without knowing the clearance of voxels."""
+    distances = np.empty(len(starts))
+    for n in range(len(starts)):
+        distances[n] = segment_clearance(runs, starts[n], ends[n], at_most[n])
+    return distances
+
+
+@compiled
 def least_clearance(runs, clearance, cell, points):
     """Least distance of a polyline (N, 3) to what is occupied [cells]; as `segment_clearances`."""
     least = np.inf

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
+from os import PathLike
 
 import numpy as np
 
@@ -38,6 +39,7 @@ from uavlab.route import Route, as_route
 from uavlab.spline import Curve
 from uavlab.spline.curve import contact_distance
 from uavlab.sweep import sweep
+from uavlab.sweep.rows import told_apart
 from uavlab.vehicle import GRAVITY, UAV
 from uavlab.weather import Weather, Wind
 from uavlab.weather.envelope import CREEP
@@ -188,6 +190,7 @@ def monte_carlo(
     every: float = 1.0,
     time_step: float = TIME_STEP,
     jobs: int | None = None,
+    to: str | PathLike[str] | None = None,
     progress: bool = False,
 ) -> Flights:
     """Fly a route many times; each flight has a stream of random numbers of its own.
@@ -206,6 +209,9 @@ def monte_carlo(
         How often offsets are kept [s], above 0.
     jobs : int, optional
         Processes, see `uavlab.sweep`.
+    to : str or Path, optional
+        A file that keeps the flights, a hundred to a row, as for `uavlab.sweep.sweep`; not of a `disturbance` that is
+        a lambda. For a UAV that stays on the ground there is none.
     progress : bool
         Show a bar.
 
@@ -218,7 +224,8 @@ def monte_carlo(
     ------
     ValueError
         If `flights` is no whole number from 1 to a million, `every` is not above 0, `jobs` is 0 or no whole number,
-        `progress` is neither True nor False, or another argument is wrong as for `fly`.
+        `to` is no file of these flights, `progress` is neither True nor False, or another argument is wrong as for
+        `fly`.
 
     See Also
     --------
@@ -257,7 +264,11 @@ def monte_carlo(
         {"setup": setup, "generators": generators[first : first + BATCH], "every": steps}
         for first in range(0, flights, BATCH)
     ]
-    done = chain.from_iterable(sweep(batch, cases, jobs=jobs, progress=progress, unit=f"{BATCH} flights"))
+    if to is not None:
+        told_apart("disturbance", disturbance)
+    unit = f"{BATCH} flights"
+    batches = sweep(batch, cases, jobs=jobs, on_error="raise", to=to, progress=progress, unit=unit)
+    done = chain.from_iterable(batches)
     outcome, duration, clearance, energy, place, offsets = zip(*done, strict=True)
     longest = max(len(rows) for rows in offsets)
     padded = [np.pad(rows, ((0, longest - len(rows)), (0, 0)), constant_values=np.nan) for rows in offsets]

@@ -15,13 +15,16 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
-from uavlab.city import City
+from uavlab.city import City, LazyCity
+from uavlab.city.lazy import refuse
 from uavlab.compiled import compilable, compiled
+from uavlab.planners.coarse import coarse_estimate, estimated, is_uneven
 from uavlab.planners.grid import (
     BOXES,
     HEURISTICS,
     LENGTHS,
     MOVES,
+    OCTILE,
     blocked_around,
     distance_left,
     steps_of,
@@ -43,7 +46,7 @@ def astar(
     goal: npt.ArrayLike,
     *,
     price: npt.ArrayLike | None = None,
-    heuristic: str = "octile",
+    heuristic: str = "auto",
     min_clearance: float = 0.0,
     min_height: float = 0.0,
     max_height: float = np.inf,
@@ -56,6 +59,8 @@ def astar(
     ways, so the search begins where the price is higher: the estimate knows nothing of a dear goal, and would
     have to look everywhere else before it pays for the last metres.
 
+    On a lazy city, two searches from both ends find a route of the same cost; there it has no price and no record.
+
     Parameters
     ----------
     city : City
@@ -63,8 +68,11 @@ def astar(
         Positions [m]. The route goes from the centre of the start's voxel to the centre of the goal's.
     price : (nx, ny, nz) array, optional
         Cost of a metre in each voxel, at least 0; `penalty_zone` gives REPARE's 1 + ω·O_risk.
-    heuristic : {"octile", "euclidean", "zero"}
-        Estimate of the remaining way: by 26 moves on an empty map; straight (Eq. 9); none (Dijkstra).
+    heuristic : {"auto", "octile", "euclidean", "zero", "coarse"}
+        Estimate of the remaining way: by 26 moves on an empty map; straight (Eq. 9); none (Dijkstra); or, with a
+        `price`, by the least prices of blocks of 4 × 4 × 4 voxels. "auto" is "coarse" where nine tenths of the map
+        cost at least 1.5 times what the cheapest voxel costs, else "octile". Each gives a cheapest route; of several
+        that cost the same it may be another one.
     min_clearance : float
         Distance to obstacles that no point of the route may fall below [m], for example D_min (Eq. 7).
     min_height, max_height : float
@@ -81,16 +89,18 @@ def astar(
     -------
     Route
         `cost`; `info["expanded"]`, the number of expansions, `info["elapsed"]` [s], `info["heuristic"]` and, with
-        `record`, `info["order"]`, the node codes as they were expanded. `reached` is False where no way exists.
+        `record`, `info["order"]`, the node codes as they were expanded. `reached` is False where no way exists, or on a
+        lazy city where none can be proven to be cheapest within memory; `reason` tells.
 
     Raises
     ------
     ValueError
         If `city` is no City. If `start` or `goal` is not three finite numbers, lies off the map, in an obstacle or a
         no-fly zone, nearer to an obstacle than `min_clearance`, or above `max_height`. If both lie in one voxel. If
-        `price` hasn't the city's shape, is negative or not finite. If `heuristic` is unknown. If `min_clearance` or
-        `min_height` is negative or not finite. If `max_height` is not above `min_height`. If `as_printed` comes without
-        a `price`.
+        `price` hasn't the city's shape, is negative or not finite. If `heuristic` is unknown, or "coarse" without a
+        `price` or `as_printed`. If `min_clearance` or `min_height` is negative or not finite. If `max_height` is not
+        above `min_height`. If `as_printed` comes without a `price`. If a `price` or `record` is asked for on a lazy
+        city.
 
     See Also
     --------
@@ -114,13 +124,23 @@ def astar(
     (<Route by A*: 151.9 m, 133 waypoints>, 3.5)
     """
     began = time.perf_counter()
-    heuristic = checks.one_of("heuristic", heuristic, HEURISTICS)
+    heuristic = checks.one_of("heuristic", heuristic, ("auto", *HEURISTICS, "coarse"))
     as_printed, record = checks.flag("as_printed", as_printed), checks.flag("record", record)
     if as_printed and price is None:
         raise ValueError("as_printed needs a price: without a penalty zone Eq. 13 is plain A*")
+    if heuristic == "coarse" and (as_printed or price is None):
+        raise ValueError('heuristic="coarse" estimates what a way costs: give a price, and leave as_printed False')
     airspace = Airspace(city, min_clearance, min_height, max_height)
+    if isinstance(city, LazyCity) and (price is not None or record):
+        refuse(city, "record" if price is None else "a price")
     ends = endpoints(airspace, start, goal)
     prices, cheapest = (None, 1.0) if price is None else checked_price(city, price)
+    if heuristic == "auto":
+        heuristic = "coarse" if prices is not None and not as_printed and is_uneven(prices, cheapest) else "octile"
+    if isinstance(city, LazyCity):
+        from uavlab.planners.both_ends import route_on_lazy
+
+        return timed(ends.added_to(route_on_lazy(airspace, ends.source, ends.target, heuristic)), began)
     route = cheapest_route(
         city,
         ends.source,
@@ -155,8 +175,13 @@ def cheapest_route(
     g = sparse_array(np.empty, city.occupied.size, np.float64)
     parent = sparse_array(np.zeros, city.occupied.size, np.uint8)
     weight = (1.0 if as_printed else cheapest) * TIE_BREAK
-    query = Query(blocked, as_printed, HEURISTICS[heuristic], weight, source, target)
-    nodes, cost, expanded, order = cheapest_nodes(query, prices, Tree(g, parent), open_list(city.occupied.size), record)
+    query = Query(blocked, as_printed, HEURISTICS.get(heuristic, OCTILE), weight, source, target)
+    coarse = None
+    if heuristic == "coarse" and prices is not None:
+        first, last = (target, source) if begins_at_goal(query, prices) else (source, target)
+        coarse = coarse_estimate(blocked, prices, cheapest, first, last)
+    waiting = open_list(city.occupied.size)
+    nodes, cost, expanded, order = cheapest_nodes(query, prices, Tree(g, parent), waiting, record, coarse)
     info = {"expanded": expanded, "heuristic": heuristic}
     if record:
         info["order"] = order
@@ -274,17 +299,24 @@ class Tree(NamedTuple):
 
 
 @compiled
-def cheapest_nodes(query, price, tree, waiting, record):
+def begins_at_goal(query, price):
+    """Whether to search from the goal to the start: where the price is higher there."""
+    return price is not None and not query.as_printed and price.ravel()[query.start] < price.ravel()[query.goal]
+
+
+@compiled
+def cheapest_nodes(query, price, tree, waiting, record, coarse=None):
     """Nodes of the cheapest route (none if there is none), its cost [cells], how many were expanded, and which.
 
-    The search begins at the end where the price is higher, and so leaves a zone at once.
+    The search begins at the end where the price is higher, and so leaves a zone at once. `coarse` estimates the rest
+    of the cost to the other end, if it is given.
     """
     backwards = False
-    if price is not None and not query.as_printed:
-        backwards = price.ravel()[query.start] < price.ravel()[query.goal]
+    if price is not None:
+        backwards = begins_at_goal(query, price)
     first, last = (query.goal, query.start) if backwards else (query.start, query.goal)
     turned = Query(query.blocked, query.as_printed, query.heuristic, query.weight, first, last)
-    expanded, order = search(turned, price, tree, waiting, record)
+    expanded, order = search(turned, price, tree, waiting, record, coarse)
     if tree.parent[last] == UNSEEN:
         return np.empty(0, np.int64), np.inf, expanded, order[:expanded]
     nodes = trace(tree.parent, first, last, query.blocked)
@@ -292,7 +324,7 @@ def cheapest_nodes(query, price, tree, waiting, record):
 
 
 @compiled
-def search(query, price, tree, waiting, record):
+def search(query, price, tree, waiting, record, coarse):
     """Expand nodes in order of g + h until the goal is the first; `parent` then holds the tree.
 
     Returns how many nodes were expanded and, with `record`, which, in order; a node may be expanded again (Eq. 13).
@@ -303,8 +335,7 @@ def search(query, price, tree, waiting, record):
     steps = steps_of(blocked)
     goal_i, goal_j, goal_k = goal // (ny * nz), goal // nz % ny, goal % nz
     prices = price.ravel() if price is not None else None
-    expanded = 0
-    order = np.empty(1024 if record else 0, np.int32)
+    expanded, order = 0, np.empty(1024 if record else 0, np.int32)
     g[query.start] = 0.0
     parent[query.start] = START
     push(waiting, query.start, 0.0)
@@ -329,14 +360,26 @@ def search(query, price, tree, waiting, record):
             if prices is not None and not as_printed:
                 cost *= 0.5 * (price_here + prices[neighbour])
             cost += so_far
-            if parent[neighbour] == UNSEEN or cost < g[neighbour] * COST_ROUNDING:
+            unseen = parent[neighbour] == UNSEEN
+            if unseen or cost < g[neighbour] * COST_ROUNDING:
                 g[neighbour] = cost
                 parent[neighbour] = move + 1
                 di, dj, dk = MOVES[move]
-                left = query.weight * distance_left(query.heuristic, goal_i - i - di, goal_j - j - dj, goal_k - k - dk)
+                left = left_from(query, coarse, neighbour, unseen, goal_i - i - di, goal_j - j - dj, goal_k - k - dk)
                 factor = prices[neighbour] if prices is not None and as_printed else 1.0
                 push(waiting, neighbour, cost * factor + left)
     return expanded, order
+
+
+@compiled
+def left_from(query, coarse, node, unseen, di, dj, dk):
+    """Estimate of the rest of the cost from a node, with the goal (di, dj, dk) cells away; kept where it takes long."""
+    if coarse is None:
+        return query.weight * distance_left(query.heuristic, di, dj, dk)
+    if unseen:
+        goal = coarse.goal
+        coarse.left[node] = TIE_BREAK * estimated(coarse, goal[0] - di, goal[1] - dj, goal[2] - dk)
+    return coarse.left[node]
 
 
 @compiled

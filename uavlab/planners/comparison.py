@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from uavlab.risk import CAMPUS_FLIGHT, RiskMap
 from uavlab.route import Route
 from uavlab.statistics import over_maps, share_over_maps
 from uavlab.sweep import sweep
+from uavlab.sweep.rows import told_apart
 
 if TYPE_CHECKING:
     import pandas
@@ -265,6 +267,7 @@ def compare_planners(
     goal: npt.ArrayLike = CAMPUS_FLIGHT[1],
     refinement: float = 0.0,
     jobs: int | None = None,
+    to: str | PathLike[str] | None = None,
     progress: bool = True,
 ) -> Comparison:
     """Run planners on maps with seeds at the same number of evaluations, against the exact optimum of each map.
@@ -285,8 +288,8 @@ def compare_planners(
     refinement : float
         Share of each budget, from 0 to below 1, that `refine` gets for the route that a planner found with the rest.
         0: none is refined.
-    jobs, progress
-        As for `sweep`.
+    jobs, to, progress
+        As for `sweep`; for a file, `planners` are no lambdas.
 
     Returns
     -------
@@ -297,9 +300,9 @@ def compare_planners(
     ValueError
         If `planners`, `maps` or `seeds` is empty, or holds what is no function, RiskMap or whole number of at least 0.
         If one of `seeds` is repeated. If one of `maps` has no route from `start` to `goal`. If `budget` is below 1. If
-        `jobs` or `progress` is what `sweep` refuses. If `refinement` is not from 0 to below 1. If one of `planners`
-        takes another number of evaluations than `budget`, or only some of them refine what they found. Also what the
-        planners raise.
+        `jobs`, `to` or `progress` is what `sweep` refuses. If `refinement` is not from 0 to below 1. If one of
+        `planners` takes another number of evaluations than `budget`, or only some of them refine what they found. Also
+        what the planners raise.
 
     See Also
     --------
@@ -323,6 +326,8 @@ def compare_planners(
     maps = [maps] if isinstance(maps, RiskMap) else checks.several("maps", maps, RiskMap)
     seeds, budget = checked_seeds(seeds), checks.whole("budget", budget, least=1)
     refinement, progress = checked_refinement(refinement), checks.flag("progress", progress)
+    if to is not None:
+        told_apart("planners", list(planners.values()))
     exact = [least_risk(risk_map, start, goal) for risk_map in maps]
     for number, route in enumerate(exact):
         if not route.reached:
@@ -334,7 +339,7 @@ def compare_planners(
         for risk_map in maps
         for seed in seeds
     ]
-    routes = sweep(one_run, cases, jobs=jobs, progress=progress, unit="run")
+    routes = sweep(one_run, cases, jobs=jobs, on_error="raise", to=to, progress=progress, unit="run")
     shape = (len(planners), len(maps), len(seeds))
     for route in routes:
         if (used := route.info.get("evaluations")) != budget:

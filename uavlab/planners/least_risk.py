@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from uavlab import checks
 from uavlab.planners.advice import what_binds
+from uavlab.planners.risk_labels import constrained, costs_nothing, shortest_of_cheapest
 from uavlab.planners.risk_question import (
     MAX_TURN,
     Weights,
@@ -25,7 +26,7 @@ from uavlab.planners.risk_question import (
     price_per_cell,
     query_of,
 )
-from uavlab.planners.risk_search import constrained, costs_nothing, shortest_of_cheapest, solve
+from uavlab.planners.risk_search import solve
 from uavlab.risk import RiskMap
 from uavlab.route import Route
 from uavlab.spline.limits import MAX_PITCH

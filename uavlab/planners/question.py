@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -16,11 +17,18 @@ import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
-from uavlab.city import City
+from uavlab.city import City, LazyCity
 from uavlab.city.extent import locked
+from uavlab.city.lazy import check_kept
 from uavlab.compiled import compiled
 from uavlab.risk.model import high_enough
 from uavlab.route import PROMISES, Route
+
+NEARBY = 64
+"""So far [cells] around a start or a goal on a lazy city it is looked for what is in the way."""
+
+MOST_LOOKED = 100_000_000
+"""Of so many voxels, and no more, a free one is looked for."""
 
 
 class Airspace(NamedTuple):
@@ -98,9 +106,13 @@ def endpoints(airspace: Airspace, start: npt.ArrayLike, goal: npt.ArrayLike) -> 
     """Where a way is to be looked for; `ValueError` if start or goal can't be flown from or to, or both are one."""
     city = airspace.city
     checks.instance("city", city, City)
-    blocked = airspace.blocked
-    source, takeoff = end_at(airspace, blocked, start, "start")
-    target, landing = end_at(airspace, blocked, goal, "goal")
+    if isinstance(city, LazyCity):
+        source, takeoff = end_nearby(airspace, city, start, "start")
+        target, landing = end_nearby(airspace, city, goal, "goal")
+    else:
+        blocked = airspace.blocked
+        source, takeoff = end_at(airspace, blocked, start, "start")
+        target, landing = end_at(airspace, blocked, goal, "goal")
     if (takeoff or (source,))[0] == (landing or (target,))[0]:
         raise ValueError(
             f"start {checks.show(start)} and goal {checks.show(goal)} lie in the same voxel: "
@@ -114,8 +126,13 @@ def endpoints(airspace: Airspace, start: npt.ArrayLike, goal: npt.ArrayLike) -> 
     return Ends(airspace, source, target, takeoff, landing[::-1])
 
 
-def end_at(airspace: Airspace, blocked: np.ndarray, point: npt.ArrayLike, argument: str) -> tuple[int, tuple[int, ...]]:
+def end_at(
+    airspace: Airspace, blocked: np.ndarray, point: npt.ArrayLike, argument: str,
+    nearest: Callable[[], str] | None = None,
+) -> tuple[int, tuple[int, ...]]:  # fmt: skip
     """The code of the voxel at a start or a goal, or above it; and those below, from the point upwards.
+
+    `nearest` gives the words for the nearest point that would do, by default of those that aren't `blocked`.
 
     Raises
     ------
@@ -134,7 +151,51 @@ def end_at(airspace: Airspace, blocked: np.ndarray, point: npt.ArrayLike, argume
         if top >= 0:
             return top, tuple(range(code, top))
         wrong = f"{TOO_LOW}={airspace.min_height:g} m, and there is no free way straight up from it"
-    raise ValueError(f"{argument} {checks.show(position)} {wrong}; {nearest_allowed(city, position, ~blocked)}")
+    instead = nearest() if nearest else nearest_allowed(city, position, ~blocked)
+    raise ValueError(f"{argument} {checks.show(position)} {wrong}; {instead}")
+
+
+def end_nearby(airspace: Airspace, city: LazyCity, point: npt.ArrayLike, argument: str) -> tuple[int, tuple[int, ...]]:
+    """`end_at` on a lazy city, from what is around the point."""
+    position = checked_position(city, point, argument)
+    min_clearance = airspace.promises["min_clearance"]
+    check_kept(city, min_clearance)
+    margin = NEARBY * city.cell + min_clearance  # of the part, which so has the clearance at the point
+    part = city.part(position, margin=margin)
+    first = np.round((part.origin - city.origin) / city.cell).astype(int)
+    blocked = blocked_columns(airspace, city, first[:2], part.shape[:2])
+    local = airspace._replace(city=part)
+    code, passed = end_at(local, blocked, position, argument, lambda: nearest_on_lazy(airspace, city, position))
+    codes = city.code_of(part.index_of([code, *passed]) + first).tolist()
+    return codes[0], tuple(codes[1:])
+
+
+def blocked_columns(airspace: Airspace, city: LazyCity, first: np.ndarray, count: tuple[int, int]) -> np.ndarray:
+    """Where a route may not be on some columns of a lazy city, (*count, nz) bool."""
+    clearance = airspace.promises["min_clearance"]
+    corner = int(first[0]), int(first[1])
+    return city.blocked_window(corner, count, clearance, airspace.min_height, airspace.max_height)
+
+
+def nearest_on_lazy(airspace: Airspace, city: LazyCity, position: np.ndarray) -> str:
+    """`nearest_allowed` on a lazy city, looked for in windows that grow."""
+    place = (position - city.origin) / city.cell
+    reach = NEARBY
+    while True:
+        first = np.maximum(np.floor(place[:2]).astype(int) - reach, 0)
+        last = np.minimum(np.floor(place[:2]).astype(int) + reach + 1, city.shape[:2])
+        count = int(last[0] - first[0]), int(last[1] - first[1])
+        if count[0] * count[1] * city.shape[2] > MOST_LOOKED and reach > NEARBY:
+            return f"no voxel within {reach // 2 * city.cell:g} m of it is free"
+        corner = np.array([*first, 0])
+        node = nearest_node(blocked_columns(airspace, city, first, count), place - corner)
+        index = np.array(np.unravel_index(max(node, 0), (*count, city.shape[2]))) + corner
+        everything = count == city.shape[:2]
+        if node >= 0 and (everything or np.linalg.norm(index + 0.5 - place) <= reach):
+            return f"the nearest free point is {checks.show(city.center_of(index))}"
+        if everything:
+            return "no voxel of the map is free"
+        reach *= 2
 
 
 @compiled

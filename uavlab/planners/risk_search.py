@@ -1,14 +1,11 @@
-"""The exact search on a risk map: nodes without headings backwards, states with headings forwards, labels with lengths.
+"""The exact search on a risk map: nodes without headings backwards, then states with headings forwards.
 
 First a Dijkstra search backwards from the goal, over nodes and without headings, gives the exact rest of the cost where
 turns are free. That never says too much, so it is an estimate for A* over the states, and nearly always the right one:
-the second search walks almost straight to the goal. With a limit on the length too, a state may be reached in several
-ways that are worth keeping, cheaper or shorter; each is a label.
+the second search walks almost straight to the goal.
 """
 
 from __future__ import annotations
-
-import heapq
 
 import numpy as np
 
@@ -16,7 +13,7 @@ from uavlab.compiled import compiled
 from uavlab.planners.astar import COST_ROUNDING, TIE_BREAK
 from uavlab.planners.grid import BOXES, blocked_around_node, steps_of
 from uavlab.planners.heap import open_list, pop, push, sparse_array
-from uavlab.planners.risk_question import LEAST_PRICE, NO_HEADING, STATES, Query, city_lengths, edge, state_after
+from uavlab.planners.risk_question import NO_HEADING, STATES, Query, edge, state_after
 
 
 def solve(query: Query, backward: bool) -> tuple[np.ndarray, float, int]:
@@ -27,49 +24,24 @@ def solve(query: Query, backward: bool) -> tuple[np.ndarray, float, int]:
         rest, expanded = rest_of_cost(query, query.source, open_list(count))
         if rest[query.source] == np.inf:
             return np.empty(0, np.int64), np.inf, expanded
-    g = sparse_array(np.empty, count * STATES, np.float64)
-    parent = sparse_array(np.zeros, count * STATES, np.uint8)
-    last, more = search_states(query, rest, g, parent, open_list(count * STATES))
+    nodes, cost, more = solve_knowing(query, rest)
+    return nodes, cost, expanded + more
+
+
+def solve_knowing(query: Query, rest: np.ndarray) -> tuple[np.ndarray, float, int]:
+    """The same with an estimate of the rest of the cost from each node (nodes,)."""
+    count = query.blocked.size * STATES
+    g = sparse_array(np.empty, count, np.float64)
+    parent = sparse_array(np.zeros, count, np.uint8)
+    last, expanded = search_states(query, rest, g, parent, open_list(count))
     if last < 0:
-        return np.empty(0, np.int64), np.inf, expanded + more
-    return trace(query, parent, last), float(g[last]), expanded + more
-
-
-def costs_nothing(query: Query, nodes: np.ndarray) -> bool:
-    """Whether a route passes nodes that cost no more than the least there is, `LEAST_PRICE`."""
-    return bool((query.price[:, nodes] <= 1.001 * LEAST_PRICE * query.price.max()).any())
-
-
-def shortest_of_cheapest(query: Query, cost: float) -> tuple[np.ndarray, int]:
-    """Nodes of the shortest of all routes of this least cost, to rounding, and how many expansions it took.
-
-    Where nobody is at risk the lengths of ways would drown in the sum of costs.
-    """
-    routes, expanded = constrained(city_lengths(query), query, np.array([cost]))
-    return routes[0][0], expanded
-
-
-def constrained(query: Query, by_length: Query, limits: np.ndarray) -> tuple[list[tuple[np.ndarray, float]], int]:
-    """For each greatest length [cells] the nodes and the cost of the cheapest route, shortest first, each once.
-
-    `by_length` is what is limited; anything that adds up may be.
-    """
-    count = query.blocked.size
-    rest, expanded = rest_of_cost(query, NOWHERE, open_list(count))
-    rest_length, more = rest_of_cost(by_length, NOWHERE, open_list(count))
-    states, parent, cost, found = search_labels(query, by_length, rest, rest_length, limits)
-    routes = []
-    for label in found[::-1]:
-        nodes = []
-        at = label
-        while at >= 0:
-            nodes.append(states[at] // STATES)
-            at = parent[at]
-        routes.append((np.array(nodes[::-1]), float(cost[label])))
-    return routes, expanded + more + len(states)
+        return np.empty(0, np.int64), np.inf, expanded
+    return trace(query, parent, last), float(g[last]), expanded
 
 
 NOWHERE = -1
+"""Where a search backwards ends that is to reach all nodes."""
+
 UNSEEN, START = 0, 255  # values of `parent`; between them 1 + move·STATES + the heading before
 
 
@@ -154,50 +126,3 @@ def state_before(steps, parent, state):
     """The state that a state was reached from."""
     move, heading = divmod(np.int64(parent[state]) - 1, STATES)
     return (state // STATES - steps[move]) * STATES + heading
-
-
-@compiled
-def search_labels(query, by_length, rest, rest_length, limits):
-    """Cheapest routes not longer than each of the limits [cells], by labels: ways to a state, cheaper or shorter.
-
-    Labels are expanded in order of cost + rest. Of two at one state the later one costs more, so it is worth
-    keeping only if it is shorter. The first label at the goal is the cheapest route within the largest limit; from
-    then on only shorter ones are of interest, for the next smaller limit. Returns state, predecessor and
-    cost of all labels, and those found at the goal, longest first.
-    """
-    steps = steps_of(query.blocked)
-    shortest = np.full(query.blocked.size * STATES, np.inf)  # of the labels expanded at each state
-    states, parent, costs, lengths = [query.source * STATES + NO_HEADING], [-1], [0.0], [0.0]
-    found = [-1]
-    limit = limits[-1] / COST_ROUNDING
-    waiting = [(rest[query.source], rest_length[query.source], 0)]
-    while len(waiting) > 0:
-        _, least, label = heapq.heappop(waiting)
-        state, length = states[label], lengths[label]
-        node, heading = state // STATES, state % STATES
-        if least > limit or length >= shortest[state] * COST_ROUNDING:
-            continue
-        shortest[state] = length
-        if node == query.target:
-            found.append(label)
-            shorter = limits[limits < length * COST_ROUNDING]
-            if len(shorter) == 0:
-                break
-            limit = shorter[-1] / COST_ROUNDING
-            continue
-        around = blocked_around_node(query.blocked, node)
-        for move in range(26):
-            if around & BOXES[move] or not query.climb[move] or not query.turn[heading, move]:
-                continue
-            neighbour = node + steps[move]
-            follower = state_after(heading, move, neighbour)
-            way = length + edge(by_length, move, node, neighbour)
-            if way + rest_length[neighbour] > limit or way >= shortest[follower] * COST_ROUNDING:
-                continue
-            cost = costs[label] + edge(query, move, node, neighbour)
-            states.append(follower)
-            parent.append(label)
-            costs.append(cost)
-            lengths.append(way)
-            heapq.heappush(waiting, (cost + rest[neighbour], way + rest_length[neighbour], len(states) - 1))
-    return np.array(states), np.array(parent), np.array(costs), np.array(found[1:])

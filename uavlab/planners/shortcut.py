@@ -11,13 +11,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from uavlab import checks
-from uavlab.city import City
+from uavlab.city import City, LazyCity
 from uavlab.city.bounds import bounds_of, keeps
+from uavlab.city.lazy import refuse
 from uavlab.city.segments import ROUNDING, distance_to_box
 from uavlab.city.voxels import voxels_on_segment
 from uavlab.compiled import compiled
@@ -26,6 +28,9 @@ from uavlab.route import Route, promises_of
 
 LOOKBACK = 128
 """With a price, so many waypoints before one are looked at."""
+
+PIECE = 300.0
+"""Of a route on a lazy city so much is looked at in one go [cells]."""
 
 
 def shortcut(
@@ -40,7 +45,8 @@ def shortcut(
 ) -> Route:
     """The cheapest route over a subset of the waypoints; it keeps what the route promised, and is no longer.
 
-    With a price and more than 128 waypoints it is the cheapest of those found in several rounds, see `LOOKBACK`.
+    With a price and more than 128 waypoints it is the cheapest of those found in several rounds, see `LOOKBACK`; on a
+    lazy city each 300 cells of the way are straightened by themselves, in two rounds that overlap.
 
     best[j] = min over i < j of best[i] + ∫ price ds from i to j, over the lines that keep what is asked for.
 
@@ -103,8 +109,11 @@ def shortcut(
         route, min_clearance=min_clearance, min_height=min_height, max_height=max_height, safe_height=safe_height
     )
     free = route.en_route
-    bounds = bounds_of(city, **promises)
-    kept, cost, leg = straightened(free.points, city.origin, city.cell, bounds, prices, cheapest)
+    if isinstance(city, LazyCity):
+        kept, cost, leg = straightened_in_parts(free.points, city, promises)
+    else:
+        bounds = bounds_of(city, **promises)
+        kept, cost, leg = straightened(free.points, city.origin, city.cell, bounds, prices, cheapest)
     if leg:
         ends = f"{leg - 1} {checks.show(free.points[leg - 1])} and {leg} {checks.show(free.points[leg])}"
         raise ValueError(
@@ -125,11 +134,34 @@ def shortcut(
 
 def price_or_length(city: City, price: npt.ArrayLike | None) -> tuple[np.ndarray | None, float]:
     """A price (nx, ny, nz) and the cheapest; None where the length alone counts, for which one number stands, too."""
+    if isinstance(city, LazyCity) and np.ndim(price) > 0:  # type: ignore[arg-type]
+        refuse(city, "a price")
     if price is not None and (values := checks.numbers("price", price)).ndim > 0:
         return checked_price(city, values)
     if price is not None:
         checks.positive("price", values)
     return None, 1.0
+
+
+def straightened_in_parts(
+    points: np.ndarray, city: LazyCity, promises: dict[str, float]
+) -> tuple[np.ndarray, float, int]:
+    """`straightened` on a lazy city: `PIECE` of the way at a time, and once more with pieces that overlap these."""
+    kept = np.arange(len(points))
+    for shift in (0.0, 0.5):
+        way = np.linalg.norm(np.diff(points[kept], axis=0), axis=1).cumsum() / (PIECE * city.cell)
+        ends = [0, *(np.flatnonzero(np.diff(np.floor(way + shift))) + 1), len(kept) - 1]
+        chosen, cost = [kept[:1]], 0.0
+        for first, last in pairwise(ends):
+            piece = points[kept[first : last + 1]]
+            part = city.part(piece, margin=promises["min_clearance"] + 2 * city.cell)
+            inner, added, leg = straightened(piece, part.origin, part.cell, bounds_of(part, **promises), None, 1.0)
+            if leg:
+                return kept, np.inf, int(kept[first + leg])
+            chosen.append(kept[first + inner[1:]])
+            cost += added
+        kept = np.concatenate(chosen)
+    return kept, cost, 0
 
 
 @compiled

@@ -14,7 +14,6 @@ import re
 import time
 from collections.abc import Callable, Mapping, Sequence
 from itertools import product
-from pickle import PicklingError
 from typing import Any
 
 import matplotlib
@@ -27,7 +26,7 @@ from uavlab import checks
 from uavlab.plot.fragment import Overlay, Pictures, Scale, alternative, fragment
 from uavlab.plot.palette import commonest, difference, indexed, png
 from uavlab.plot.style import DPI
-from uavlab.sweep import sweep
+from uavlab.sweep import UnpicklableError, sweep
 
 MOST_BYTES = 500_000
 """Of a fragment: pages and notebooks hold several."""
@@ -299,9 +298,9 @@ def all_drawn(
     ]
     failed = None
     try:
-        pictures = sweep(drawn_elsewhere, others, jobs=jobs, progress=progress, unit="frame")
-    except PicklingError:  # what can't travel to other processes, such as an open file, can be drawn here
-        pictures = sweep(drawn_elsewhere, others, jobs=1, progress=progress, unit="frame")
+        pictures = sweep(drawn_elsewhere, others, jobs=jobs, on_error="raise", progress=progress, unit="frame")
+    except UnpicklableError:  # what can't travel to other processes, such as an open file, can be drawn here
+        pictures = sweep(drawn_elsewhere, others, jobs=1, on_error="raise", progress=progress, unit="frame")
     except FailedError as error:
         failed = error
     if failed is not None:

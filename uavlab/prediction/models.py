@@ -247,7 +247,7 @@ def compare_models(
         checks.function(f"models[{name!r}]", model, "model(dataset)")
     checks.flag("each", each)
     cases = [{"seed": seed, "setting": setting, "models": models} for seed in seeds]
-    tables = sweep(scores_of_seed, cases, jobs=jobs, progress=progress, unit="dataset")
+    tables = sweep(scores_of_seed, cases, jobs=jobs, on_error="raise", progress=progress, unit="dataset")
     table = pandas.DataFrame([row for rows in tables for row in rows])
     if each:
         return table

@@ -16,6 +16,7 @@ import shapely
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.columns import share_out
+from uavlab.city.lazy import check_plain
 from uavlab.city.place import System, system_of
 from uavlab.city.terrain import COVERED, checked_raster
 from uavlab.risk.rates import CARS_PER_KM, LANE_WIDTH, SHELTER, vehicle_share
@@ -99,7 +100,7 @@ def raster_layer(
     >>> people.ravel().round(5), (people * 100**2).ravel().round(1)
     (array([0.002 , 0.0012, 0.0004]), array([20., 12.,  4.]))
     """
-    checks.instance("city", city, City)
+    check_plain(city, "a layer of a risk map")
     factor = PER[per] if per is None else PER[checks.one_of("per", per, [name for name in PER if name])]
     raster, edges = checked_raster("values", values, bounds)
     if fill is not None:
@@ -234,7 +235,7 @@ def road_layer(
     >>> share[0].round(4), round(float(share.sum() * 5.0**2 / 8.4), 3)
     (array([0.0028, 0.028 , 0.0028]), 0.8)
     """
-    checks.instance("city", city, City)
+    check_plain(city, "a layer of a risk map")
     if not isinstance(lines, Sequence | np.ndarray):
         raise ValueError(f"lines must be a list of lines (M, 2), got {type(lines).__name__}")
     widths, densities = (
@@ -324,7 +325,7 @@ def shelter_layer(city: City, ground: npt.ArrayLike = "none", *, high: float = H
     >>> shelter_layer(city, "sparse trees").ravel()
     array([0.25, 0.5 , 0.75, 0.25])
     """
-    checks.instance("city", city, City)
+    check_plain(city, "a layer of a risk map")
     checks.not_negative_number("high", high)
     open_ground = shelter_of(ground)
     if open_ground.shape not in ((), city.shape[:2]):

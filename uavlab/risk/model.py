@@ -12,6 +12,7 @@ import numpy.typing as npt
 from uavlab import checks
 from uavlab.city import City
 from uavlab.city.extent import locked
+from uavlab.city.lazy import check_plain
 from uavlab.risk.drift import Falls, falls_of, landing_rate
 from uavlab.risk.rates import check_density, person_rate, vehicle_rate
 from uavlab.risk.sora import highest_within, igrc
@@ -83,7 +84,7 @@ class RiskMap:
     as_printed: bool = False
 
     def __post_init__(self) -> None:
-        checks.instance("city", self.city, City)
+        check_plain(self.city, "a risk map")
         checks.instance("uav", self.uav, UAV)
         for name in ("population_density", "shelter", "vehicle_share"):
             object.__setattr__(self, name, checked_layer(self.city, name, getattr(self, name)))

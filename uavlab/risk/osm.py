@@ -25,6 +25,7 @@ from uavlab.city.footprints import (
     properties_of,
     ring_of,
 )
+from uavlab.city.lazy import check_plain
 from uavlab.city.lengths import length_in_metres
 from uavlab.city.place import system_for
 from uavlab.city.source import Notes, Source
@@ -136,7 +137,7 @@ def osm_layers(
     >>> layers, round(float(layers.vehicle_share.max()), 4)
     (<Layers from roads.geojson: shelter and vehicle_share of 8 × 6 columns>, 0.0092)
     """
-    checks.instance("city", city, City)
+    check_plain(city, "a layer of a risk map")
     lane_width = checks.positive_number("lane_width", lane_width)
     by_class = cars_by_class(cars_per_km)
     path, notes = checks.path("path", path), Notes()

@@ -11,6 +11,7 @@ import numpy as np
 
 from uavlab import checks
 from uavlab.city import Building, City
+from uavlab.city.lazy import check_plain
 from uavlab.route import Route
 
 THREAT_CONSTANT = 100.0
@@ -60,7 +61,7 @@ def building_threat(city: City, *, constant: float = THREAT_CONSTANT) -> np.ndar
     >>> threat[:, 2, 0].round(1), float(threat[:, :, 3:].max())
     (array([11.4, 16. , 26.7, 40. , 40. , 26.7, 16. , 11.4]), 0.0)
     """
-    checks.instance("city", city, City)
+    check_plain(city, "a threat in each voxel")
     constant = checks.not_negative_number("constant", constant)
     if not city.buildings and city.occupied.any():
         raise ValueError("city must know its buildings, not only voxels: use read_geojson or City.from_buildings")
