@@ -293,7 +293,7 @@ def growth_lines(grown: Growth) -> Iterator[str]:
     for voxels, expanded, seconds in zip(grown.voxels, grown.expanded, grown.seconds, strict=True):
         rate = LINES * 64 * expanded.sum() / seconds.sum()
         yield (
-            f"| {round(voxels ** (1 / 3))}³ | {expanded.mean():,.0f} | {1000 * seconds.mean():.3g} | "
+            f"| {round(voxels ** (1 / 3))}³ | {expanded.mean():,.0f} | {three_digits(1000 * seconds.mean())} | "
             f"{1e9 * seconds.sum() / expanded.sum():.0f} | {rate / 1e9:.2g} | {100 * rate / memory:.0f} % |"
         )
     yield ""
