@@ -526,9 +526,9 @@ plot.risk(campus, 25.0, {"shortest route": across, "less risk": around}, colors=
 # | [12 B-splines and feasibility](12_bsplines_and_feasibility.ipynb) | Which curve can a UAV fly, and how fast? |
 # | [13 Flying in gusts](13_flying_in_gusts.ipynb) | Which planner's route survives the wind, and how sure is that? |
 # | [14 From route to autopilot](14_from_route_to_autopilot.ipynb) | How does a route get into an autopilot, and does it fly it? |
+# | **V And then** | |
+# | [15 The papers on trial](15_the_papers_on_trial.ipynb) | Which sentences of the three papers hold, and which can't be checked? |
 # | [16 Your own city](16_your_own_city.ipynb) | Can you plan a flight over a place that you know? |
-#
-# There is no chapter 15.
 #
 # ## Remember
 #

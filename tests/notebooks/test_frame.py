@@ -136,3 +136,11 @@ def test_words_that_readers_stumbled_over_are_gone(chapter):
     for words in AVOIDED:
         found = re.search(words, text)
         assert not found, text[max(0, found.start() - 60) : found.end() + 30]
+
+
+def test_the_first_chapter_names_all_others():
+    """Nobody who starts there misses one."""
+    first = (SOURCES / "00_start_here.py").read_text(encoding="utf-8").partition("## All chapters")[2]
+    for source in sorted(SOURCES.glob("[0-9][0-9]_*.py"))[1:]:
+        assert f"[{source.stem[:2]} " in first, source.stem
+        assert f"({source.stem}.ipynb) | " in first, source.stem
