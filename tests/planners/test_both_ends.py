@@ -75,9 +75,8 @@ def test_the_cost_is_that_of_the_whole_map(seed, turn, monkeypatch):
             assert not open_to[box].any()
 
 
-@pytest.mark.parametrize("turn", [1, 300, 20_000])
-def test_courtyards_at_both_ends_and_a_wall_between(turn, monkeypatch):
-    monkeypatch.setattr(both_ends, "FIRST_TURN", turn)
+def courtyards():
+    """Two, with doors above their roofs, and a wall between them, as a plain and as a lazy city; a place in each."""
 
     def ring(x, y, door):
         court = [(x + 2, y + 2), (x + 18, y + 2), (x + 18, y + 18), (x + 2, y + 18)]
@@ -87,6 +86,14 @@ def test_courtyards_at_both_ends_and_a_wall_between(turn, monkeypatch):
     buildings = [ring(10, 70, 33.0), ring(165, 60, 36.0), wall]
     plain, lazy = (City.from_buildings(buildings, origin=(0, 0, 0), size=(195, 150, 40), lazy=a) for a in (False, True))
     pair = (20.5, 80.5, 3.5), (175.5, 70.5, 4.5)
+    return plain, lazy, pair
+
+
+@pytest.mark.parametrize("turn", [1, 300, 20_000])
+def test_courtyards_at_both_ends_and_a_wall_between(turn, monkeypatch):
+    monkeypatch.setattr(both_ends, "FIRST_TURN", turn)
+
+    plain, lazy, pair = courtyards()
     whole, local = (astar(city, *pair, min_clearance=1.0) for city in (plain, lazy))
     assert local.cost == pytest.approx(whole.cost, rel=3e-9)
     assert local.info["blocks"] <= 12
@@ -188,14 +195,7 @@ def test_what_is_proven_without_memory_is_in_metres_and_not_too_much(cell, monke
 def test_what_one_search_knows_spares_the_other_most_of_the_map(turn, monkeypatch):
     monkeypatch.setattr(both_ends, "FIRST_TURN", turn)
 
-    def ring(x, y, door):
-        court = [(x + 2, y + 2), (x + 18, y + 2), (x + 18, y + 18), (x + 2, y + 18)]
-        return Building.prism([(x, y), (x + 20, y), (x + 20, y + 20), (x, y + 20)], door, holes=[court])
-
-    wall = Building.prism([(100, 0), (103, 0), (103, 130), (100, 130)], 38.0)
-    buildings = [ring(10, 70, 33.0), ring(165, 60, 36.0), wall]
-    plain, lazy = (City.from_buildings(buildings, origin=(0, 0, 0), size=(195, 150, 40), lazy=a) for a in (False, True))
-    pair = (20.5, 80.5, 3.5), (175.5, 70.5, 4.5)
+    plain, lazy, pair = courtyards()
     whole, local = (astar(city, *pair, min_clearance=1.0) for city in (plain, lazy))
     assert local.info["expanded"] < 0.3 * whole.info["expanded"]
 

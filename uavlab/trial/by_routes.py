@@ -10,7 +10,6 @@ import numpy as np
 
 from uavlab.city import City, table1_city
 from uavlab.planners import astar, penalty_zone, potential_field, repare
-from uavlab.resilience import safe_distance
 from uavlab.route import Route
 from uavlab.trial.judging import Measured
 from uavlab.trial.measures import exact, fewer, percent, ratio_of_sums, statistic_of
@@ -29,6 +28,9 @@ FITTED = "lattice, weak"
 """The field whose constants were chosen so that it meets Table 2."""
 UNFITTED = [name for name in FIELDS if name != FITTED]
 CASES = {"light, mild": ("light", "mild"), "heavy, mild": ("heavy", "mild"), "light, heavy": ("light", "heavy")}
+"""Loads and winds of REPARE's Table 4."""
+DISTANCES = dict(zip(CASES, (3.5, 4.5, 5.5), strict=True))
+"""The distances to keep that it prints for them [m]."""
 
 
 @cache
@@ -51,14 +53,13 @@ def table_2(size: int, seed: int) -> dict[str, Measured]:
     city = papers_city()
     pairs = city.random_pairs(300, seed, apart=40, min_clearance=4.5)[:size]
     plain = [astar(city, *pair) for pair in pairs]
-    light, found = [repare(city, *pair) for pair in pairs], {}
-    for name, case in CASES.items():
-        kept = safe_distance(*case)
-        free = [n for n, pair in enumerate(pairs) if city.distance(pair).min() >= kept]  # ends may be nearer to walls
-        careful = [repare(city, *pairs[n], load=case[0], disturbance=case[1]) for n in free]
-        found[f"REPARE / A*, {name}"] = statistic_of(
-            lengths_of(careful) / lengths_of(plain)[free], f"{len(free)} pairs"
-        )
+    careful, found = {}, {}
+    for name, (load, wind) in CASES.items():
+        free = [n for n, pair in enumerate(pairs) if city.distance(pair).min() >= DISTANCES[name]]
+        careful[name] = [repare(city, *pairs[n], load=load, disturbance=wind) for n in free]
+        ratio = lengths_of(careful[name]) / lengths_of(plain)[free]
+        found[f"REPARE / A*, {name}"] = statistic_of(ratio, f"{len(free)} pairs")
+    light = careful["light, mild"]  # of all pairs: their ends are farther from walls
     found["REPARE arrives"] = percent([route.reached for route in light], f"{size} pairs")
     work = [[route.info["expanded"] for route in both] for both in zip(light, plain, strict=True)]
     found["work"] = statistic_of(work, f"{size} pairs, nodes expanded", ratio_of_sums)
@@ -110,9 +111,9 @@ def grazing_pairs(size: int, seed: int) -> list[np.ndarray]:
 def kept(size: int, seed: int) -> dict[str, Measured]:
     """On how many pairs [%] REPARE's route keeps the distance of Table 4, where A*'s touches walls."""
     pairs, found = grazing_pairs(size, seed), {}
-    for (name, case), distance in zip(CASES.items(), (3.5, 4.5, 5.5), strict=True):
-        routes = [repare(papers_city(), *pair, load=case[0], disturbance=case[1]) for pair in pairs]
-        found[name] = percent(nearest(routes) >= distance - 1e-9, f"{len(pairs)} pairs")
+    for name, (load, wind) in CASES.items():
+        routes = [repare(papers_city(), *pair, load=load, disturbance=wind) for pair in pairs]
+        found[name] = percent(nearest(routes) >= DISTANCES[name] - 1e-9, f"{len(pairs)} pairs")
     return found
 
 

@@ -52,7 +52,7 @@ RESULTS = [
             why="The detour grows with the distance, which the table doesn't give: each of Table 4's has a row.",
             experiment=TABLE_2, of=f"REPARE / A*, {case}",
         )
-        for case, distance in zip(by_routes.CASES, (3.5, 4.5, 5.5), strict=True)
+        for case, distance in by_routes.DISTANCES.items()
     ),
     claim(
         item="Table 2: time of A* over the field", chapter="06", printed="0.558", says="A* is quicker", why=OTHER_CLOCK,
@@ -144,7 +144,7 @@ RESULTS = [
             says=f"{name}: REPARE keeps them", why="On these pairs a detour costs less than the zone.", experiment=KEPT,
             of=name,
         )
-        for name, distance in zip(by_routes.CASES, (3.5, 4.5, 5.5), strict=True)
+        for name, distance in by_routes.DISTANCES.items()
     ),
     claim(
         item="Table 4: levels", chapter="07", printed="100", line=50.0, unit="% of rows",
